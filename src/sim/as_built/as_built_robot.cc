@@ -12,6 +12,13 @@ namespace {
 
 constexpr double kGravity_mps2 = 9.81;
 
+/// Returns the specific force in the frame of the IMU while the body stands level.
+Eigen::Vector3d force_at_rest_mps2(const RobotDescription& robot) {
+  const auto imu = robot.T_body_sensor.find("imu");
+  const Eigen::Vector3d up_mps2 = kGravity_mps2 * Eigen::Vector3d::UnitZ();
+  return imu == robot.T_body_sensor.end() ? up_mps2 : imu->second.rotation.conjugate() * up_mps2;
+}
+
 }  // namespace
 
 AsBuiltRobot::AsBuiltRobot(const AsBuiltSettings& settings, RobotDescription nominal, std::uint64_t seed)
@@ -175,6 +182,7 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors, const ImuE
     add(frame + ".pitch_rad", rotation.y());
     add(frame + ".yaw_rad", rotation.z());
   }
+  const Eigen::Vector3d by_gravity_radps = imu_errors.g_sensitivity * force_at_rest_mps2(nominal_);
   constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     add(fmt::format("imu.gyro_{}_bias_radps", kAxes[axis]), imu_errors.gyro.bias[axis] + sensor.gyro.bias[axis]);
@@ -182,7 +190,7 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors, const ImuE
     add(fmt::format("imu.gyro_{}_warming_radps", kAxes[axis]), imu_errors.warming_k * imu_errors.gyro.bias_per_k[axis]);
     add(fmt::format("imu.accel_{}_warming_mps2", kAxes[axis]),
         imu_errors.warming_k * imu_errors.accel.bias_per_k[axis]);
-    add(fmt::format("imu.gyro_{}_by_gravity_radps", kAxes[axis]), kGravity_mps2 * imu_errors.g_sensitivity(axis, 2));
+    add(fmt::format("imu.gyro_{}_by_gravity_radps", kAxes[axis]), by_gravity_radps[axis]);
   }
   add("imu.gyro_z_scale_error", imu_errors.gyro.distortion(2, 2));
   if (nominal_.tracks) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,6 +72,17 @@ TEST(AsBuiltRobot, TruthContainsTheBiasesOfTheImuWithWarmingAndGravity) {
   EXPECT_EQ(values.at("imu.gyro_x_warming_radps"), imu.warming_k * imu.gyro.bias_per_k.x());
   EXPECT_EQ(values.at("imu.accel_x_warming_mps2"), imu.warming_k * imu.accel.bias_per_k.x());
   EXPECT_EQ(values.at("imu.gyro_x_by_gravity_radps"), 9.81 * imu.g_sensitivity(0, 2));
+}
+
+// Rolled by 90 degrees, y of the IMU points up.
+TEST(AsBuiltRobot, GravityActsOnTheGyroInTheFrameOfARolledImu) {
+  RobotDescription rolled = tracked();
+  rolled.T_body_sensor.at("imu").rotation = quaternion_from_rpy(0.5 * std::numbers::pi, 0.0, 0.0);
+  const AsBuiltRobot robot(enabled(), rolled, 4);
+  const std::map<std::string, double> values = values_of(robot);
+  for (const auto& [axis, name] : {std::pair(0, "x"), std::pair(1, "y"), std::pair(2, "z")})
+    EXPECT_NEAR(values.at(fmt::format("imu.gyro_{}_by_gravity_radps", name)), 9.81 * robot.imu().g_sensitivity(axis, 1),
+                1e-12);
 }
 
 TEST(AsBuiltRobot, DisabledSettingsGiveTheNominalRobot) {
