@@ -27,12 +27,7 @@ std::optional<EncoderInterval> TrackEncoders::add(const DriveTicks& ticks) {
   } else if (!stationary_since_) {
     stationary_since_ = before->stamp;
   }
-  EncoderInterval interval{.start = before->stamp, .end = ticks.stamp};
-  interval.step_mps = settings_.meters_per_tick / interval.dt_s();
-  interval.speed = {.left_mps = interval.step_mps * static_cast<double>(ticks.left - before->left),
-                    .right_mps = interval.step_mps * static_cast<double>(ticks.right - before->right),
-                    .lateral_mps = interval.step_mps * static_cast<double>(ticks.lateral - before->lateral),
-                    .residual_mps = interval.step_mps * static_cast<double>(ticks.residual - before->residual)};
+  EncoderInterval interval = interval_from(*before, ticks);
   if (!accept_change(interval)) return std::nullopt;
 
   const TrackSpeed before_mps = smooth_.value_or(interval.speed);
@@ -54,12 +49,34 @@ std::optional<EncoderInterval> TrackEncoders::add(const DriveTicks& ticks) {
   return interval;
 }
 
+EncoderInterval TrackEncoders::interval_from(const DriveTicks& before, const DriveTicks& ticks) const {
+  EncoderInterval interval{.start = before.stamp, .end = ticks.stamp};
+  interval.step_mps = settings_.meters_per_tick / interval.dt_s();
+  interval.speed = {.left_mps = interval.step_mps * static_cast<double>(ticks.left - before.left),
+                    .right_mps = interval.step_mps * static_cast<double>(ticks.right - before.right),
+                    .lateral_mps = interval.step_mps * static_cast<double>(ticks.lateral - before.lateral),
+                    .residual_mps = interval.step_mps * static_cast<double>(ticks.residual - before.residual)};
+  return interval;
+}
+
+std::optional<TrackSpeed> TrackEncoders::speed_until(const DriveTicks& ticks) const {
+  if (!last_) return std::nullopt;
+  const EncoderInterval interval = interval_from(*last_, ticks);
+  const TrackSpeed before_mps = smooth_.value_or(interval.speed);
+  const double change = std::max(std::abs(interval.speed.left_mps - before_mps.left_mps),
+                                 std::abs(interval.speed.right_mps - before_mps.right_mps));
+  return change <= max_change_mps(interval) ? std::optional(interval.speed) : std::nullopt;
+}
+
+double TrackEncoders::max_change_mps(const EncoderInterval& interval) const {
+  return settings_.max_acceleration_mps2 * (interval.dt_s() + kSmoothing_s) + 2.0 * interval.step_mps;
+}
+
 bool TrackEncoders::accept_change(const EncoderInterval& interval) {
   const TrackSpeed before_mps = smooth_.value_or(interval.speed);
   const double change = std::hypot(interval.speed.mean_mps() - before_mps.mean_mps(),
                                    interval.speed.lateral_mps - before_mps.lateral_mps);
-  const double possible = settings_.max_acceleration_mps2 * (interval.dt_s() + kSmoothing_s) + 2.0 * interval.step_mps;
-  if (change <= possible) {
+  if (change <= max_change_mps(interval)) {
     rejected_since_.reset();
     return true;
   }

@@ -65,6 +65,10 @@ class TrackEncoders {
   /// counts.
   std::optional<EncoderInterval> add(const DriveTicks& ticks);
 
+  /// Returns the speeds from the last reading to `ticks`, without adding it. Returns nullopt before the first reading
+  /// and if the speed of a track changes more than it can, as when the counters restart.
+  std::optional<TrackSpeed> speed_until(const DriveTicks& ticks) const;
+
   /// Returns whether there was no tick for at least `kStandstill`.
   bool is_stationary() const { return stationary_since_ && last_ && last_->stamp - *stationary_since_ >= kStandstill; }
   /// Returns the start of the standstill; valid only while `is_stationary()` is true.
@@ -80,6 +84,8 @@ class TrackEncoders {
   }
 
  private:
+  EncoderInterval interval_from(const DriveTicks& before, const DriveTicks& ticks) const;
+  double max_change_mps(const EncoderInterval& interval) const;
   bool accept_change(const EncoderInterval& interval);
 
   Settings settings_;

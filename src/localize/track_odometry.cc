@@ -139,11 +139,8 @@ void TrackOdometry::process_pending() {
 void TrackOdometry::coast_to(const DriveTicks& ticks) {
   slip_detector_.reset();
   double yaw_rate = imu_.filter()->yaw_rate_radps();
-  if (const auto& last = encoders_.last()) {
-    const auto turn_ticks = static_cast<double>((ticks.right - last->right) - (ticks.left - last->left));
-    yaw_rate =
-        turn_ticks * meters_per_tick_ / to_seconds(ticks.stamp - last->stamp) / (geometry_.gauge_m * skid_ratio_);
-  }
+  if (const std::optional<TrackSpeed> speed = encoders_.speed_until(ticks))
+    yaw_rate = speed->difference_mps() / (geometry_.gauge_m * skid_ratio_);
   imu_.coast_to(ticks.stamp, yaw_rate);
 }
 

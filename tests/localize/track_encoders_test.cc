@@ -44,6 +44,18 @@ TEST(TrackEncoders, AJumpIsDisbelievedAndASpeedThatLastsIsNot) {
   EXPECT_EQ(refused, 14) << "for 0.3 s a leap to 5 m/s";
 }
 
+// Turning in place at 0.5 m/s: a restart of both counters leaves the mean unchanged.
+TEST(TrackEncoders, TheSpeedUntilTheNextReadingIsNoneWhereTheCountersRestart) {
+  TrackEncoders counters = make_counters();
+  EXPECT_FALSE(counters.speed_until({milliseconds(0), 0, 0}));
+  for (int i = 0; i <= 10; ++i) counters.add({milliseconds(20 * i), -10 * i, 10 * i});
+  const auto speed = counters.speed_until({milliseconds(220), -110, 110});
+  ASSERT_TRUE(speed);
+  EXPECT_DOUBLE_EQ(speed->difference_mps(), 1.0);
+  EXPECT_FALSE(counters.speed_until({milliseconds(220), 0, 0}));
+  EXPECT_EQ(counters.last()->right, 100) << "it has been added";
+}
+
 TEST(TrackEncoders, NoIntervalIsReturnedAcrossAGapOfASecond) {
   TrackEncoders counters = make_counters();
   counters.add({milliseconds(0), 0, 0});

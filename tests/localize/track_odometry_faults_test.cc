@@ -191,5 +191,28 @@ TEST(TrackOdometryFaults, EncodersThatRestartAtZeroCostNoMeters) {
   EXPECT_EQ(odometry.health().num_slip_events, 0U);
 }
 
+// The counters restart at 17 s, after a second without the IMU.
+TEST(TrackOdometryFaults, CountersThatRestartDuringAnImuOutageDoNotTurnTheRobot) {
+  TrackedDrive drive(make_tracked_robot(), make_tour(), {}, 6);
+  TrackOdometry clean(make_tracked_robot(), {}), restarted(make_tracked_robot(), {});
+  TrackTicks at_restart{};
+  while (to_seconds(drive.now()) < 18.0) {
+    drive.step();
+    const double time_s = to_seconds(drive.now());
+    if (time_s < 16.0) {
+      clean.add(drive.imu());
+      restarted.add(drive.imu());
+    }
+    if (!drive.has_ticks()) continue;
+    const TrackTicks ticks = drive.ticks();
+    if (time_s > 17.0 && at_restart.stamp == Time{}) at_restart = ticks;
+    clean.add(ticks);
+    restarted.add(TrackTicks{ticks.stamp, ticks.left - at_restart.left, ticks.right - at_restart.right});
+  }
+  const double turned_rad =
+      wrap_angle(to_yaw(restarted.estimate()->T_odom_body.rotation) - to_yaw(clean.estimate()->T_odom_body.rotation));
+  EXPECT_LT(std::abs(turned_rad), 0.03);
+}
+
 }  // namespace
 }  // namespace patrol::localize::track_odometry_faults_test
