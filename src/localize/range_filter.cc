@@ -54,8 +54,7 @@ double nlos_density(double x, double std, double mean_bias) {
 RangeFilter::RangeFilter(const RangeFilterSettings& settings, const std::vector<UwbAnchor>& anchors_in_map,
                          Pose3 T_body_uwb)
     : settings_(checked(settings)),
-      calibration_{
-          .distance_m = settings.bias_distance_m, .bias_m = settings.bias_m, .range_std_m = settings.range_std_m},
+      calibration_(settings.calibration()),
       anchors_(by_number(anchors_in_map)),
       T_body_uwb_(std::move(T_body_uwb)) {}
 

@@ -40,6 +40,10 @@ struct RangeFilterSettings {
   double reset_std_m = 0.5;     ///< standard deviation added to x and y when the covariance is inflated
   double reset_std_rad = 0.05;  ///< standard deviation added to the yaw when the covariance is inflated
 
+  UwbCalibration calibration() const {
+    return {.distance_m = bias_distance_m, .bias_m = bias_m, .range_std_m = range_std_m};
+  }
+
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("bias_distance_m", self.bias_distance_m, between(0.0, 1000.0));

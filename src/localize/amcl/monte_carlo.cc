@@ -58,9 +58,9 @@ std::span<const SensorModelFactory> sensor_models() { return kSensorModels; }
 
 MonteCarloLocalizer::MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map,
                                          const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb,
-                                         std::uint64_t seed)
+                                         std::uint64_t seed, const UwbCalibration& calibration)
     : settings_(checked(settings)),
-      ranges_(anchors_in_map, T_body_uwb),
+      ranges_(anchors_in_map, T_body_uwb, calibration),
       lines_(checked(map), kLineRadius_cells),
       sensor_model_(
           row_named(kSensorModels, settings.sensor_model, "localization.sensor_model").make(settings, map, lines_)),

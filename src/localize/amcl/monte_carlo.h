@@ -59,10 +59,11 @@ struct LocalizationUpdate {
 /// Accuracy: millimeters where the scan constrains the pose, otherwise the spread of the cluster.
 class MonteCarloLocalizer {
  public:
-  /// Anchors are in map, with heights above the body origin, for level ground. Throws InputError if a setting is
-  /// invalid, or if the map is empty or has no free or no occupied cell.
+  /// Anchors are in map, with heights above the body origin, for level ground. `calibration`: bias of the UWB ranges.
+  /// Throws InputError if a setting is invalid, or if the map is empty or has no free or no occupied cell.
   MonteCarloLocalizer(const MonteCarloSettings& settings, const OccupancyGrid& map,
-                      const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed);
+                      const std::vector<UwbAnchor>& anchors_in_map, const Pose3& T_body_uwb, std::uint64_t seed,
+                      const UwbCalibration& calibration = {});
 
   /// Sets the initial pose; covariance of x, y, yaw in map.
   void set_initial_pose(const Pose2& T_map_body, const Eigen::Matrix3d& covariance);

@@ -11,12 +11,13 @@ constexpr double kPriorRanges = 10.0;  // weight of the mean of all positions, i
 
 }  // namespace
 
-RangeBiasMap::RangeBiasMap(const std::vector<slam::MappedRange>& ranges, const std::vector<UwbAnchor>& anchors_in_map) {
+RangeBiasMap::RangeBiasMap(const std::vector<slam::MappedRange>& ranges, const std::vector<UwbAnchor>& anchors_in_map,
+                           const UwbCalibration& calibration) {
   std::map<int, int> counts;
   for (const slam::MappedRange& range : ranges) {
     const auto anchor = std::ranges::find(anchors_in_map, range.anchor, &UwbAnchor::number);
     if (anchor == anchors_in_map.end()) continue;
-    const PredictedRange predicted = predict_uwb_range(*anchor, range.T_map_body, range.p_level_antenna, {});
+    const PredictedRange predicted = predict_uwb_range(*anchor, range.T_map_body, range.p_level_antenna, calibration);
     AnchorBias& bias = anchors_[range.anchor];
     bias.local.push_back({range.T_map_body.position(), range.range_m - predicted.range_m, range.count});
     bias.mean_m += (bias.local.back().bias_m - bias.mean_m) * range.count / (counts[range.anchor] += range.count);

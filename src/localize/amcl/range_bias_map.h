@@ -16,8 +16,9 @@ namespace patrol::localize {
 class RangeBiasMap {
  public:
   RangeBiasMap() = default;
-  /// The anchors are in map. Ranges of other anchors are ignored.
-  RangeBiasMap(const std::vector<slam::MappedRange>& ranges, const std::vector<UwbAnchor>& anchors_in_map);
+  /// The anchors are in map. Ranges of other anchors are ignored. `calibration`: bias of the predicted ranges.
+  RangeBiasMap(const std::vector<slam::MappedRange>& ranges, const std::vector<UwbAnchor>& anchors_in_map,
+               const UwbCalibration& calibration = {});
 
   /// Returns the mean error of the ranges to an anchor, m; zero without a range to it.
   double bias_m(int anchor) const;

@@ -5,8 +5,8 @@
 
 namespace patrol::localize {
 
-RangeBuffer::RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb)
-    : T_body_uwb_(std::move(T_body_uwb)) {
+RangeBuffer::RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb, UwbCalibration calibration)
+    : T_body_uwb_(std::move(T_body_uwb)), calibration_(std::move(calibration)) {
   set_anchors(anchors_in_map);
 }
 

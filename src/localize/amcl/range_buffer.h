@@ -15,8 +15,8 @@ namespace patrol::localize {
 /// Buffer of the newest range of each anchor, with the odometry pose at its time.
 class RangeBuffer {
  public:
-  /// Anchors in map, with heights above the body origin.
-  RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb);
+  /// Anchors in map, with heights above the body origin. `calibration`: bias of the line-of-sight ranges.
+  RangeBuffer(const std::vector<UwbAnchor>& anchors_in_map, Pose3 T_body_uwb, UwbCalibration calibration = {});
 
   void set_anchors(const std::vector<UwbAnchor>& anchors_in_map);
   /// Adds a range. Ranges of unknown anchors and ranges that are not finite and positive are ignored.

@@ -15,11 +15,13 @@ std::vector<UwbAnchor> anchors_above_body(std::vector<UwbAnchor> anchors, double
 
 KnownMapLocalizer::KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map,
                                      const std::vector<UwbAnchor>& anchors_in_map, double height_above_ground_m,
-                                     const Pose3& T_body_uwb, const Eigen::Matrix3d& map_covariance, std::uint64_t seed)
+                                     const Pose3& T_body_uwb, const Eigen::Matrix3d& map_covariance, std::uint64_t seed,
+                                     const UwbCalibration& calibration)
     : map_(std::move(map)),
       height_above_ground_m_(height_above_ground_m),
       map_covariance_(map_covariance),
-      localizer_(settings, map_, anchors_above_body(anchors_in_map, height_above_ground_m), T_body_uwb, seed) {}
+      localizer_(settings, map_, anchors_above_body(anchors_in_map, height_above_ground_m), T_body_uwb, seed,
+                 calibration) {}
 
 void KnownMapLocalizer::set_anchors(const std::vector<UwbAnchor>& anchors_in_map) {
   localizer_.set_anchors(anchors_above_body(anchors_in_map, height_above_ground_m_));

@@ -13,11 +13,11 @@ namespace patrol::stack {
 /// Monte Carlo localization on a fixed map.
 class KnownMapLocalizer final : public Localizer {
  public:
-  /// `height_above_ground_m`: height of the body's origin. `map_covariance`: of the map's own deformation, which is
-  /// added to the pose.
+  /// `height_above_ground_m`: height of the origin of the standing body. `map_covariance`: of the map's own
+  /// deformation, which is added to the pose. `calibration`: bias of the UWB ranges.
   KnownMapLocalizer(const localize::MonteCarloSettings& settings, OccupancyGrid map,
                     const std::vector<UwbAnchor>& anchors_in_map, double height_above_ground_m, const Pose3& T_body_uwb,
-                    const Eigen::Matrix3d& map_covariance, std::uint64_t seed);
+                    const Eigen::Matrix3d& map_covariance, std::uint64_t seed, const UwbCalibration& calibration);
 
   using Localizer::add;
   void add(const RangeWithOdometry& range) override { localizer_.add(range.range, range.T_odom_body); }

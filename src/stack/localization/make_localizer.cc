@@ -38,12 +38,12 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
   const std::string method = method_of(settings, start);
   const auto refuse = [&](const char* why) { throw InputError(fmt::format("stack.localizer = {}: {}", method, why)); };
   const std::optional<Pose3> T_body_uwb = antenna_of(robot);
-  const auto make_on_map = [settings = settings.localization, anchors = site_in_map.anchors,
-                            height_m = robot.body_height_m(), T_body_uwb,
-                            covariance = map_covariance(settings.registration),
-                            seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
+  const auto make_on_map =
+      [settings = settings.localization, anchors = site_in_map.anchors, height_m = robot.body_height_m(), T_body_uwb,
+       covariance = map_covariance(settings.registration), calibration = settings.uwb_filter.calibration(),
+       seed](OccupancyGrid map) -> std::unique_ptr<Localizer> {
     return std::make_unique<KnownMapLocalizer>(settings, std::move(map), anchors, height_m,
-                                               T_body_uwb.value_or(Pose3{}), covariance, seed);
+                                               T_body_uwb.value_or(Pose3{}), covariance, seed, calibration);
   };
   if (method == "monte_carlo") {
     if (!start.map) refuse("requires a map: set the key map, or select slam or slam_then_monte_carlo");
@@ -54,7 +54,8 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
                                               site_in_map.anchors, T_body_uwb, map_covariance(settings.registration));
   if (method == "slam") return slam;
   if (!start.has_mapping_drive) refuse("requires a teleoperated mapping drive: select slam");
-  return std::make_unique<MapThenLocalize>(std::move(slam), site_in_map.anchors, make_on_map);
+  return std::make_unique<MapThenLocalize>(std::move(slam), site_in_map.anchors, make_on_map,
+                                           settings.uwb_filter.calibration());
 }
 
 }  // namespace patrol::stack

@@ -5,8 +5,11 @@
 namespace patrol::stack {
 
 MapThenLocalize::MapThenLocalize(std::unique_ptr<Localizer> slam, std::vector<UwbAnchor> anchors_in_map,
-                                 LocalizerFactory make_on_map)
-    : current_(std::move(slam)), make_on_map_(std::move(make_on_map)), anchors_in_map_(std::move(anchors_in_map)) {}
+                                 LocalizerFactory make_on_map, UwbCalibration calibration)
+    : current_(std::move(slam)),
+      make_on_map_(std::move(make_on_map)),
+      calibration_(std::move(calibration)),
+      anchors_in_map_(std::move(anchors_in_map)) {}
 
 void MapThenLocalize::add(const RangeWithOdometry& range) {
   RangeWithOdometry corrected = range;
@@ -34,7 +37,7 @@ Pose2 MapThenLocalize::finish_map(const PoseEstimate& pose) {
 
 void MapThenLocalize::set_anchors(const std::vector<UwbAnchor>& anchors_in_map) {
   anchors_in_map_ = anchors_in_map;
-  range_biases_ = localize::RangeBiasMap(mapped_ranges_, anchors_in_map_);
+  range_biases_ = localize::RangeBiasMap(mapped_ranges_, anchors_in_map_, calibration_);
   current_->set_anchors(anchors_in_map_);
 }
 

@@ -16,8 +16,10 @@ class MapThenLocalize final : public Localizer {
  public:
   using LocalizerFactory = std::function<std::unique_ptr<Localizer>(OccupancyGrid)>;
 
-  /// `make_on_map` makes the localizer for the complete map, with `anchors_in_map`.
-  MapThenLocalize(std::unique_ptr<Localizer> slam, std::vector<UwbAnchor> anchors_in_map, LocalizerFactory make_on_map);
+  /// `make_on_map` makes the localizer for the complete map, with `anchors_in_map`. `calibration`: bias of the UWB
+  /// ranges for which that localizer accounts.
+  MapThenLocalize(std::unique_ptr<Localizer> slam, std::vector<UwbAnchor> anchors_in_map, LocalizerFactory make_on_map,
+                  UwbCalibration calibration = {});
 
   void add(const RangeWithOdometry& range) override;
   void add(const slam::PositionMeasurement& position) override { current_->add(position); }
@@ -38,6 +40,7 @@ class MapThenLocalize final : public Localizer {
  private:
   std::unique_ptr<Localizer> current_;
   LocalizerFactory make_on_map_;
+  UwbCalibration calibration_;
   std::vector<UwbAnchor> anchors_in_map_;
   std::vector<Pose2> path_of_mapping_;            ///< [scan] once the map is complete
   std::vector<slam::MappedRange> mapped_ranges_;  ///< once the map is complete

@@ -30,10 +30,6 @@ localize::OnlineCalibratorSettings calibration_on_map(const StackSettings& setti
   return calibration;
 }
 
-UwbCalibration uwb_calibration(const localize::RangeFilterSettings& settings) {
-  return {.distance_m = settings.bias_distance_m, .bias_m = settings.bias_m};
-}
-
 std::vector<UwbAnchor> placed(std::vector<UwbAnchor> anchors, const Pose2& T_site_start) {
   for (UwbAnchor& anchor : anchors) anchor.p_m.head<2>() = T_site_start * Eigen::Vector2d(anchor.p_m.head<2>());
   return anchors;
@@ -53,13 +49,13 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
       odometry_(make_odometry_source(settings, robot)),
       leveler_(robot.T_body("lidar"), settings.scan_leveling),
       registrar_(for_map(settings.registration, start.map.has_value()), site, start.map_registration,
-                 uwb_calibration(settings.uwb_filter)),
+                 settings.uwb_filter.calibration()),
       T_start_site_(site.T_site_start.inverse()),
       max_mapping_tilt_rad_(slam::max_tilt_rad(settings.slam)),
       T_body_lidar_(robot.T_body("lidar")),
       anchors_in_site_(placed(site_in_map.anchors, site.T_site_start)),
       anchors_in_map_(site_in_map.anchors),
-      uwb_calibration_(uwb_calibration(settings.uwb_filter)),
+      uwb_calibration_(settings.uwb_filter.calibration()),
       line_of_sight_(settings.line_of_sight),
       calibration_period_(from_seconds(settings.calibration.period_s)) {
   localizer_ = make_localizer(settings, robot, site_in_map, start, seed);

@@ -83,5 +83,12 @@ TEST(MakeLocalizer, ExactRangesOfAQuadrupedConfirmThePoseWithAGivenMapAndAfterMa
   }
 }
 
+TEST(MakeLocalizer, RangesHaveTheBiasOfTheSettings) {
+  const LocalizationConfidence confidence =
+      confidence_of_ranges({.map = map_of_small_room()}, {.distance_m = {1.0, 9.0}, .bias_m = {0.5, 0.5}});
+  EXPECT_FALSE(confidence.is_lost);
+  EXPECT_GT(confidence.confidence, 0.9);
+}
+
 }  // namespace
 }  // namespace patrol::stack::make_localizer_test
