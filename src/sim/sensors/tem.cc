@@ -16,7 +16,8 @@ TemGateLayout reported_window(const TemSettings& settings) {
   validate(settings, "sensors.tem");
   TemGateLayout window{.gate_s = {}, .ramp_s = settings.ramp_s, .gate_width = settings.relative_gate_width};
   const double step = std::pow(10.0, 1.0 / settings.gates_per_decade);
-  for (double gate_s = settings.first_gate_s; gate_s <= settings.last_gate_s; gate_s *= step)
+  // Rounding must not remove the gate at the upper limit.
+  for (double gate_s = settings.first_gate_s; gate_s <= (1.0 + 1e-9) * settings.last_gate_s; gate_s *= step)
     window.gate_s.push_back(gate_s);
   if (window.gate_s.size() < 3) {
     throw InputError(fmt::format("sensors.tem.last_gate_s = {}: must leave at least three gates after first_gate_s",

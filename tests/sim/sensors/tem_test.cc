@@ -1,6 +1,7 @@
 #include "sim/sensors/tem.h"
 
 #include <cmath>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -163,6 +164,21 @@ std::string complaint(const TemSettings& settings, const WaterBodySettings& body
     return error.what();
   }
   return "";
+}
+
+TEST(Tem, TheGateAtTheUpperLimitIsNotLostByRounding) {
+  for (const double per_decade : {3.0, 5.0, 10.0, 20.0, 30.0}) {
+    for (const auto& [first_s, last_s, decades] :
+         {std::tuple(1e-6, 1e-3, 3.0), std::tuple(2e-6, 2e-4, 2.0), std::tuple(1e-5, 1e-4, 1.0)}) {
+      TemSettings settings = ideal();
+      settings.first_gate_s = first_s;
+      settings.last_gate_s = last_s;
+      settings.gates_per_decade = per_decade;
+      const std::vector<double> gate_s = sound(settings, {}, Eigen::Vector3d::UnitX()).gate_s;
+      EXPECT_EQ(gate_s.size(), static_cast<std::size_t>(decades * per_decade) + 1) << per_decade << " from " << first_s;
+      EXPECT_NEAR(gate_s.back() / last_s, 1.0, 1e-9);
+    }
+  }
 }
 
 TEST(Tem, RefusesABodyAboutTheAntennaAndGatesThatAreNone) {
