@@ -84,7 +84,6 @@ class TrackFilter {
   /// a wrong tilt, m/s2.
   double forward_acceleration_std_mps2() const;
   double scale() const { return scale_; }
-  double slip() const { return slip_; }
   const Eigen::Vector2d& icr_m() const { return icr_m_; }
 
   /// Error covariance: rows and columns of InertialError, followed by these.

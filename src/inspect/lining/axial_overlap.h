@@ -7,7 +7,7 @@
 
 namespace patrol::inspect {
 
-/// Input of `grip`: points in any frame, and the scanner position in that frame.
+/// Input of `axial_overlap`: points in any frame, and the scanner position in that frame.
 struct ScanView {
   const SurfaceCloud& cloud;
   Eigen::Vector3d p_scanner = Eigen::Vector3d::Zero();

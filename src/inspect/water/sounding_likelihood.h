@@ -25,8 +25,8 @@ class SoundingLikelihood {
   /// Prepares the likelihood. Throws InputError if there are no soundings or their gates differ.
   SoundingLikelihood(const SoundingErrorSettings& settings, const std::vector<OrientedSounding>& soundings);
 
-  /// Return log likelihoods up to a common constant. `towards`: unit vector from the coil to the center of the sphere,
-  /// in the frame of yaw and pitch.
+  /// Return log likelihoods up to a common constant. `direction`: unit vector from the coil to the center of the
+  /// sphere, in the frame of yaw and pitch.
   double log_likelihood_rock(double rock_spm) const;
   double log_likelihood_body(double rock_spm, const ConductiveSphere& sphere, const Eigen::Vector3d& direction) const;
 

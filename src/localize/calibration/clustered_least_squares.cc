@@ -30,7 +30,6 @@ void ClusteredLeastSquares::reset() {
   H_ = Eigen::MatrixXd::Zero(size, size);
   g_ = Eigen::VectorXd::Zero(size);
   squared_errors_ = num_rows_ = 0.0;
-  num_measurements_ = 0;
 }
 
 void ClusteredLeastSquares::add(const LinearMeasurement& measurement) {
@@ -48,7 +47,6 @@ void ClusteredLeastSquares::add(const LinearMeasurement& measurement) {
   const Eigen::VectorXd error = measurement.r - measurement.J * (H_ + prior_information()).ldlt().solve(g_);
   squared_errors_ += error.dot(measurement.W * error);
   num_rows_ += static_cast<double>(error.size());
-  ++num_measurements_;
 }
 
 void ClusteredLeastSquares::merge_pairs() {

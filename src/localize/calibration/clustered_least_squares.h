@@ -56,11 +56,9 @@ class ClusteredLeastSquares {
   /// average for measurements of the model, whatever the scale of their errors.
   double distance(const LinearMeasurement& measurement) const;
 
-  int num_measurements() const { return num_measurements_; }
-
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(prior_information_, group_s_, groups_, H_, g_, squared_errors_, num_rows_, num_measurements_);
+    archive(prior_information_, group_s_, groups_, H_, g_, squared_errors_, num_rows_);
   }
 
  private:
@@ -84,7 +82,6 @@ class ClusteredLeastSquares {
   Eigen::VectorXd g_;
   double squared_errors_ = 0.0;  ///< r^T W r minus J x, each at the estimate of its time
   double num_rows_ = 0.0;
-  int num_measurements_ = 0;
 };
 
 }  // namespace patrol::localize

@@ -32,7 +32,6 @@ class Magnetometer {
   /// Returns the reading for a given field in the sensor's frame.
   MagneticField measure(const Eigen::Vector3d& field_t, Time now, std::uint64_t index) const;
 
-  const Eigen::Matrix3d& soft_iron() const { return soft_iron_; }
   const Eigen::Vector3d& hard_iron_t() const { return hard_iron_t_; }
 
  private:

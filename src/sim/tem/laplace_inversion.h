@@ -32,12 +32,4 @@ inline std::array<LaplaceNode, kLaplaceNodes> laplace_nodes() {
   return nodes;
 }
 
-/// Returns the inverse Laplace transform of `transform`, a function of the complex frequency, at time t > 0.
-template <typename Transform>
-double inverse_laplace(const Transform& transform, double time_s) {
-  double value = 0.0;
-  for (const LaplaceNode& node : laplace_nodes()) value += (node.weight * transform(node.st / time_s)).imag();
-  return value / time_s;
-}
-
 }  // namespace patrol::sim
