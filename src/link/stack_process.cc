@@ -101,20 +101,25 @@ std::vector<std::string> command_words(const std::string& command) {
   return words;
 }
 
-void check_program(const std::string& program) {
+std::optional<std::filesystem::path> find_program(const std::string& program) {
   const auto is_executable = [](const std::filesystem::path& file) {
     return std::filesystem::is_regular_file(file) && ::access(file.c_str(), X_OK) == 0;
   };
   if (program.find('/') != std::string::npos) {
-    if (is_executable(program)) return;
+    if (is_executable(program)) return program;
   } else {
     const char* const path = std::getenv("PATH");
     std::istringstream folders(path != nullptr ? path : "/usr/bin:/bin");
     for (std::string folder; std::getline(folders, folder, ':');) {
-      if (is_executable(std::filesystem::path(folder.empty() ? "." : folder) / program)) return;
+      const std::filesystem::path file = std::filesystem::path(folder.empty() ? "." : folder) / program;
+      if (is_executable(file)) return file;
     }
   }
-  throw InputError(fmt::format("stack {}: program not found", program));
+  return std::nullopt;
+}
+
+void check_program(const std::string& program) {
+  if (!find_program(program)) throw InputError(fmt::format("stack {}: program not found", program));
 }
 
 StackProcess::StackProcess(const ProcessSettings& settings) {

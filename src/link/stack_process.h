@@ -18,6 +18,10 @@ namespace patrol::link {
 /// special: no shell reads the command. Throws InputError if it has no word or a quotation mark is not closed.
 std::vector<std::string> command_words(const std::string& command);
 
+/// Returns the executable file of a program, found by PATH unless its name has a slash; nullopt if it is not found or
+/// cannot be executed.
+std::optional<std::filesystem::path> find_program(const std::string& program);
+
 /// Throws InputError if a program is not found by PATH or cannot be executed.
 void check_program(const std::string& program);
 

@@ -69,12 +69,13 @@ std::vector<PlannedScenario> plan_calibration(const TestOptions& options, const 
   return planned;
 }
 
-/// Runs without a result, each once.
+/// Runs without a result, each once. Removes results that are failures of a stack in another process.
 std::vector<BatchRun> missing_runs(const std::vector<PlannedScenario>& planned, const ResultStore& store) {
   std::vector<BatchRun> missing;
   std::set<std::string> keys;
   for (const PlannedScenario& one : planned) {
     for (const BatchRun& run : one.runs) {
+      store.remove_stack_failure(run.key);
       if (!store.has(run.key) && keys.insert(run.key).second) missing.push_back(run);
     }
   }

@@ -12,8 +12,9 @@ namespace patrol::app {
 std::string build_id();
 
 /// Computes the content hash of a run from everything that determines its result. Inputs are the resolved scenario, the
-/// files of its world, its robot and those that it names, the program and its MuJoCo. Runs of equal hash give equal
-/// bytes; a new build changes all hashes.
+/// files of its world, its robot and those that it names, the program and its MuJoCo. With `stack.command` also the
+/// content of the files that its words name: the program and arguments such as a script. Files that these read by
+/// themselves are not included. Runs of equal hash give equal bytes; a new build changes all hashes.
 class RunHasher {
  public:
   explicit RunHasher(std::filesystem::path data_root);

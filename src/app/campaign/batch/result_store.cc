@@ -22,6 +22,12 @@ void ResultStore::save(const std::string& key, const RunVerdict& verdict) const 
   io::save_metrics(file(key), to_json(verdict));
 }
 
+void ResultStore::remove_stack_failure(const std::string& key) const {
+  const std::optional<RunVerdict> verdict = load(key);
+  if (verdict && (verdict->end == RunStatus::kStackFailed || verdict->end == RunStatus::kStackSilent))
+    std::filesystem::remove(file(key));
+}
+
 void ResultStore::copy(const std::string& key, const ResultStore& from) const {
   std::filesystem::create_directories(folder_);
   io::save_text(file(key), io::load_text(from.file(key)));

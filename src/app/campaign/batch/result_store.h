@@ -21,6 +21,8 @@ class ResultStore {
   /// Result of a key; none if missing. Throws InputError if the file is damaged.
   std::optional<RunVerdict> load(const std::string& key) const;
   void save(const std::string& key, const RunVerdict& verdict) const;
+  /// Removes the result of a key if a stack in another process failed or was silent: a repetition may succeed.
+  void remove_stack_failure(const std::string& key) const;
   /// Copies a result from another store; it may exist in both.
   void copy(const std::string& key, const ResultStore& from) const;
 

@@ -13,6 +13,9 @@ namespace patrol::app {
 
 void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory,
                const Shard& shard, const BatchSettings& settings) {
+  for (std::size_t i = 0; i < manifest.runs.size(); ++i) {
+    if (shard.contains(i)) directory.store().remove_stack_failure(manifest.runs[i].hash);
+  }
   while (true) {
     const SweepProgress progress = evaluate_progress(manifest, load_rows(manifest, directory.store()));
     std::vector<BatchRun> runs;

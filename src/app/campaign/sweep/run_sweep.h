@@ -8,8 +8,8 @@
 
 namespace patrol::app {
 
-/// Runs the missing runs of a shard on this machine; with early stopping, in stages of interim analyses. Throws
-/// std::runtime_error if interrupted.
+/// Runs the missing runs of a shard on this machine, and repeats those whose stack in another process failed before.
+/// With early stopping, in stages of interim analyses. Throws std::runtime_error if interrupted.
 void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory,
                const Shard& shard, const BatchSettings& settings);
 

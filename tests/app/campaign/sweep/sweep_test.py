@@ -171,6 +171,32 @@ class Sweep(SweepCase):
         made = [file for file in (out / "runs").iterdir() if file.stat().st_mtime >= begin]
         self.assertEqual(len(made), 2)
 
+    def stack_script(self, name, text):
+        script = self.path / name
+        script.write_text(text)
+        return script, ["--seeds", "1", "--set", f"stack.command=sh {script}"]
+
+    def test_a_change_of_the_file_of_an_external_stack_makes_new_runs(self):
+        out = self.path / "stack_changed"
+        script, arguments = self.stack_script("stack.sh", f"exec {PATROL} stack\n")
+        self.assertEqual(self.sweep(out, *arguments).returncode, 0)
+        self.assertEqual(self.sweep(out, *arguments).returncode, 0)
+        self.assertEqual(len(list((out / "runs").glob("*.json"))), 1)
+        script.write_text("exit 5\n")
+        done = self.sweep(out, *arguments)
+        self.assertEqual(done.returncode, 3, done.stdout)
+        self.assertEqual([row["end"] for row in self.rows(out)], ["stack failed"])
+
+    def test_a_run_whose_stack_failed_is_repeated(self):
+        out, license_file = self.path / "stack_failed", self.path / "license"
+        _, arguments = self.stack_script("licensed.sh", f"test -e {license_file} || exit 5\nexec {PATROL} stack\n")
+        self.assertEqual(self.sweep(out, *arguments).returncode, 3)
+        self.assertEqual([row["end"] for row in self.rows(out)], ["stack failed"])
+        license_file.write_text("")
+        done = self.sweep(out, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([row["end"] for row in self.rows(out)], ["done"])
+
     def test_kept_runs_can_be_scored_again(self):
         out = self.path / "kept"
         self.assertEqual(self.sweep(out, "--seeds", "1", "--keep-runs", "all").returncode, 0)
