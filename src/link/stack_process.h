@@ -61,7 +61,8 @@ class StackProcess {
   std::optional<int> status_;
 };
 
-/// CPU time of a process; nullopt if it is gone or belongs to another user.
+/// CPU time of a process, with all its threads but without its children; nullopt if it is gone or belongs to another
+/// user.
 std::optional<double> cpu_seconds_of(pid_t process);
 
 }  // namespace patrol::link

@@ -9,6 +9,7 @@ import os
 import pathlib
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -47,6 +48,47 @@ pathlib.Path(sys.argv[1]).write_text(str(os.getpid()))
 patrol_client.run(lambda turn: turn.publish_velocity(0.3, 0.0, 0.3), topics=["/scan"], turn_period=0.05)
 """
 
+
+# Ends the mission by its first turn after 0.49 s.
+ENDS = """
+import patrol_client
+
+def on_turn(turn):
+    turn.publish_velocity(0.3)
+    turn.mission_is_over = turn.now > 0.49
+
+patrol_client.run(on_turn, topics=["/scan"], turn_period=0.05)
+"""
+
+# Computes 20 ms in each turn, in a child if it is asked to fork.
+BUSY = """
+import os
+import sys
+import time
+import patrol_client
+
+def on_turn(turn):
+    start = time.process_time()
+    while time.process_time() - start < 0.02:
+        pass
+    turn.publish_velocity(0.3)
+
+if "forks" in sys.argv and os.fork() > 0:
+    os._exit(0)
+patrol_client.run(on_turn, topics=["/scan"], turn_period=0.05)
+"""
+
+# Connects, and leaves the turns to a child.
+HEIR = """
+import os
+import patrol_client
+
+def fork(client):
+    if os.fork() > 0:
+        os._exit(0)
+
+patrol_client.run(lambda turn: turn.publish_velocity(0.3), topics=["/scan"], turn_period=0.05, on_start=fork)
+"""
 
 STRAIGHT = """
 import sys
@@ -176,6 +218,29 @@ class SameBytes(unittest.TestCase):
         self.assertGreater(len(turns), 10)
         done = verify(slow, BUILT_IN)
         self.assertEqual(done.stdout, "simulator: byte-identical\nstack: byte-identical\n", done.stderr)
+
+    def delays_of(self, run_directory):
+        """Delays of the turns, ns."""
+        turns = [struct.unpack_from("<iIiI", data, 4) for topic, _, data in messages(run_directory) if topic == "/stack/turns"]
+        return [seconds * 10**9 + nanoseconds for _, _, seconds, nanoseconds in turns]
+
+    def test_the_computing_time_is_that_of_the_process_that_connects(self):
+        busy = write_stack(self.path, "busy.py", BUSY)
+        script = self.path / "wrapper.sh"
+        script.write_text(f"{busy} $*\nexit $?\n")  # without exec
+        for name, command in (("direct", busy), ("wrapped", f"sh {script}"), ("forked", busy + " forks")):
+            out = self.run_to(name, command, settings=["stack.compute.model=measured", "stack.compute.factor=1"],
+                              time_limit_s=1.0)
+            delays = self.delays_of(out)
+            self.assertGreater(min(delays[:-1]), 10_000_000, name)  # 20 ms of CPU time; the last turn has no delay
+
+    def test_a_process_that_connects_and_leaves_the_turns_to_its_child_cannot_be_measured(self):
+        command = write_stack(self.path, "heir.py", HEIR)
+        done = run(self.path / "heir", command, settings=["stack.compute.model=measured"], time_limit_s=1.0)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stdout, r"the stack exited with code 0 at \d\.\d\d0 s")
+        done = run(self.path / "free", command, time_limit_s=1.0)
+        self.assertEqual(done.returncode, 4, done.stderr)
 
     def test_a_fixed_computing_time_delays_every_message(self):
         for stack in (None, BUILT_IN):

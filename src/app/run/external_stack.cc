@@ -195,7 +195,14 @@ void ExternalStack::deliver(link::DeliveredMessage message) {
 
 void ExternalStack::begin_turn(Time now) {
   ensure_connected();
-  cpu_start_s_ = cpu_seconds();
+  turn_ = now;
+  if (settings_.compute.model == "measured") {
+    try {
+      cpu_start_s_ = cpu_seconds();
+    } catch (const LinkError& error) {
+      fail(error, fmt::format("at {:.3f} s", to_seconds(turn_)));
+    }
+  }
   begin_turn(now, false);
 }
 
@@ -219,8 +226,7 @@ StackAnswer ExternalStack::end_turn() {
     for (link::PublishedMessage& message : received.messages)
       answer.messages.push_back(checked_message(std::move(message), stamp_range()));
     for (const PublishedMessage& message : answer.messages) warn_of_frame(message);
-    const std::optional<double> cpu_end_s = cpu_seconds();
-    answer.delay = delay_of(settings_.compute, cpu_start_s_ && cpu_end_s ? *cpu_end_s - *cpu_start_s_ : 0.0);
+    answer.delay = delay_of(settings_.compute, cpu_start_s_ ? cpu_seconds() - *cpu_start_s_ : 0.0);
     return answer;
   } catch (const LinkError& error) {
     fail(error, fmt::format("at {:.3f} s", to_seconds(turn_)));
@@ -229,6 +235,7 @@ StackAnswer ExternalStack::end_turn() {
 
 std::vector<PublishedMessage> ExternalStack::finish(Time now) {
   ensure_connected();
+  cpu_start_s_.reset();  // the last messages have no delay
   begin_turn(now, true);
   return end_turn().messages;
 }
@@ -266,11 +273,16 @@ void ExternalStack::warn_of_frame(const PublishedMessage& message) {
              *expected_frame(*message.content));
 }
 
-/// CPU time of the stack since its start; nullopt unless it delays the commands.
-std::optional<double> ExternalStack::cpu_seconds() const {
-  if (settings_.compute.model != "measured") return std::nullopt;
-  const pid_t id = process_ ? process_->id() : server_->peer_process();
-  return id > 0 ? link::cpu_seconds_of(id) : std::nullopt;
+/// CPU time of the process that has connected, with all its threads, since its start. It may be a child of the process
+/// that Patrol started. Throws LinkError if the time cannot be read.
+double ExternalStack::cpu_seconds() {
+  if (process_) process_->is_running();  // collects a process that has ended: its clock would stand still
+  const pid_t id = server_->peer_process();
+  if (const std::optional<double> seconds = id > 0 ? link::cpu_seconds_of(id) : std::nullopt) return *seconds;
+  throw LinkError(
+      LinkFault::kClosed,
+      fmt::format("CPU time of the process that connected ({}) cannot be read: stack.compute.model = measured needs it",
+                  id));
 }
 
 std::optional<std::string> unexpected_frame(const PublishedMessage& message) {

@@ -67,7 +67,7 @@ class ExternalStack final : public StackPort {
   void start_process();
   void begin_turn(Time now, bool is_last);
   [[noreturn]] void fail(const link::LinkError& error, const std::string& when);
-  std::optional<double> cpu_seconds() const;
+  double cpu_seconds();
   StampRange stamp_range() const;
   void warn_of_frame(const PublishedMessage& message);
 
@@ -83,7 +83,7 @@ class ExternalStack final : public StackPort {
   Time newest_stamp_{};           ///< of the delivered messages
   std::set<std::string> warned_;  ///< topics with a warning
   std::optional<double>
-      cpu_start_s_;  ///< CPU time of the stack at its beginning; nullopt unless it delays the commands
+      cpu_start_s_;  ///< CPU time of the stack at the start of the turn; nullopt unless it delays the messages
   double wait_s_ = 0.0;
   std::atomic<bool> is_abandoned_ = false;  ///< the run ends before the stack has connected
   std::future<void> connecting_;  ///< until the stack has connected; last, because its thread uses the other members
