@@ -137,6 +137,14 @@ class SameBytes(unittest.TestCase):
             feed(delayed, self.path / "fed", stack)
             self.assertEqual((self.path / "fed/log.mcap").read_bytes(), (delayed / "log.mcap").read_bytes())
 
+    def test_a_mission_that_ends_with_a_computing_time_is_fed_to_the_log_of_the_run(self):
+        ends = write_stack(self.path, "ends.py", ENDS)
+        # The next turn is due when the answer that ends the mission takes effect.
+        delayed = self.run_to("ended", ends, settings=["stack.compute.model=fixed", "stack.compute.delay_s=0.06"])
+        feed(delayed, self.path / "fed", ends)
+        self.assertEqual((self.path / "fed/log.mcap").read_bytes(), (delayed / "log.mcap").read_bytes())
+        self.assertEqual(len(self.delays_of(delayed)), 11)  # turns every 60 ms from 0 to 0.54 s, and the last one
+
     def test_a_fed_stack_has_its_turns_when_it_asks_for_them(self):
         # The run has a turn every 50 ms, the fed stack every 10 ms: it publishes odometry every 20 ms.
         circle = self.run_to("circle", write_stack(self.path, "circle.py", CIRCLE) + f" {self.path / 'process_id'}")

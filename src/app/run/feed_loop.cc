@@ -71,7 +71,7 @@ class FeedLoop {
       if (!keep_running(now)) return;
       outcome_.duration = now;
       const StackAnswer answer = take_turn(now, std::nullopt);
-      mission_is_over = answer.mission_is_over;
+      mission_is_over = answer.mission_is_over || (fall_time_ && now >= *fall_time_);
       if (mission_is_over) outcome_.duration = answer_time(now, answer.delay);
       next_turn = std::max(answer.next_turn, now + answer.delay);
     }
@@ -132,6 +132,7 @@ class FeedLoop {
       const bool is_for_stack = io::is_stack_input(message.topic);
       if (message.log_time > now || (!is_for_stack && !is_end && message.log_time == now)) return;
       log_.write_foreign(message.log_time, message.topic, next_input_->type, next_input_->definition, message.cdr);
+      if (message.topic == io::kTopic<FallReport>) fall_time_ = message.log_time;
       if (is_for_stack) stack_.deliver(std::move(message));
       next_input_.reset();
     }
@@ -171,6 +172,7 @@ class FeedLoop {
   Time end_{};
   Time next_progress_{};
   std::optional<Input> next_input_;
+  std::optional<Time> fall_time_;
   RunOutcome outcome_;
 };
 

@@ -200,11 +200,11 @@ class ClosedLoop {
     return log_.write(now, message);
   }
 
-  /// Publishes what the stack has computed by now, and lets it begin a turn when it is due. The simulator continues
-  /// beside a turn whose delay is known.
+  /// Publishes what the stack has computed by now, and lets it begin a turn when it is due and the mission is not over.
+  /// The simulator continues beside a turn whose delay is known.
   void give_turn(Time now) {
     publish_answer(now);
-    if (turn_is_running_ || answer_ || now < next_turn_) return;
+    if (mission_is_over_ || turn_is_running_ || answer_ || now < next_turn_) return;
     turn_ = now;
     stack_.begin_turn(now);
     turn_is_running_ = true;

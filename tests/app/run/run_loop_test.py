@@ -41,14 +41,15 @@ class EndOfARun(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
         self.path = pathlib.Path(self.folder.name)
 
-    def run_in(self, world, period_s, end_s, time_limit_s):
+    def run_in(self, world, period_s, end_s, time_limit_s, settings=()):
         """Runs a standing robot; returns the first line of the result, the exit code and the metrics."""
         (self.path / "worlds" / "site").mkdir(parents=True)
         (self.path / "worlds/site/site.xml").write_text(world)
         (self.path / "stack.py").write_text(STACK.format(period_s=period_s, end_s=end_s))
         done = subprocess.run([PATROL, "run", "site", "--robot", "wheeled", "--start", "0,0", "--goal", "5,0",
                                "--set", f"time_limit_s={time_limit_s}", "--stack", f"{sys.executable} {self.path / 'stack.py'}",
-                               "--out", "run"], cwd=self.path, capture_output=True, text=True, timeout=100)
+                               "--out", "run", *(word for setting in settings for word in ("--set", setting))],
+                              cwd=self.path, capture_output=True, text=True, timeout=100)
         self.assertTrue(done.stdout, done.stderr)
         return done.stdout.splitlines()[0], done.returncode, json.loads((self.path / "run/metrics.json").read_text())
 
@@ -57,6 +58,14 @@ class EndOfARun(unittest.TestCase):
         self.assertIn("fall (the robot fell at", line)
         self.assertEqual(code, 1)
         self.assertTrue(metrics["mission"]["fell"])
+
+    def test_a_fall_with_a_computing_time_is_fed_to_the_log_of_the_run(self):
+        line, _, _ = self.run_in(WORLD, period_s=0.05, end_s=-1, time_limit_s=4,
+                                 settings=["stack.compute.model=fixed", "stack.compute.delay_s=0.06"])
+        self.assertIn("fall (the robot fell at", line)
+        subprocess.run([PATROL, "feed", "run", "--stack", f"{sys.executable} {self.path / 'stack.py'}", "--out", "fed"],
+                       cwd=self.path, capture_output=True, timeout=100)
+        self.assertEqual((self.path / "fed/log.mcap").read_bytes(), (self.path / "run/log.mcap").read_bytes())
 
     def test_a_fall_before_the_time_limit_is_a_fall_though_the_stack_has_no_turn_after_it(self):
         line, code, _ = self.run_in(WORLD, period_s=20, end_s=-1, time_limit_s=4)
