@@ -14,12 +14,15 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "io/files/one_line.h"
 
 namespace patrol::io {
 namespace {
 
 using eprosima::fastcdr::Cdr;
 using eprosima::fastcdr::FastBuffer;
+
+constexpr std::size_t kMaxPadding = 3;  ///< bytes after the last field, to a multiple of 4
 
 enum class Count { kOne, kFixed, kSequence };
 
@@ -37,6 +40,17 @@ std::string short_name(std::string type) {
   return type;
 }
 
+/// Returns whether a name is "package/msg/Type", with letters, digits and underscores.
+bool is_type_name(std::string_view name) {
+  const auto is_word = [](std::string_view word) {
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    return !word.empty() && is_letter(word.front()) &&
+           std::ranges::all_of(word, [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+  };
+  const std::size_t middle = name.find("/msg/");
+  return middle != std::string_view::npos && is_word(name.substr(0, middle)) && is_word(name.substr(middle + 5));
+}
+
 /// Parses a line such as "float64[36] covariance" to a member; constants and comments are skipped.
 void parse_line(const std::string& line, std::vector<Member>& members) {
   std::istringstream words(line.substr(0, line.find('#')));
@@ -52,7 +66,7 @@ void parse_line(const std::string& line, std::vector<Member>& members) {
     member.count = is_fixed ? Count::kFixed : Count::kSequence;
     if (is_fixed) {
       const auto [end, error] = std::from_chars(inside.data(), inside.data() + inside.size(), member.size);
-      if (error != std::errc{} || end != inside.data() + inside.size())
+      if (error != std::errc{} || end != inside.data() + inside.size() || member.size == 0)
         throw InputError("message definition: invalid size of an array: " + member.type);
     }
     member.type.resize(bracket);
@@ -93,6 +107,7 @@ class FieldReader {
     if (members == types_.end()) throw InputError("message definition: type not found: " + type);
     if (++depth_ > kMaxDepth) throw InputError("message definition: too many types in each other: " + type);
     const std::string package = type.substr(0, type.find('/') + 1);
+    if (members->second.empty()) take<std::uint8_t>();  // ROS 2 gives a type without fields one byte
     for (const Member& member : members->second) {
       const std::string path = prefix.empty() || !keeps_fields_ ? member.name : prefix + "." + member.name;
       const std::string in_package = package + member.type;
@@ -154,6 +169,7 @@ class FieldReader {
     else if (type == "uint64") read_plain<std::uint64_t>(path);
     else if (type == "bool") read_plain<bool>(path);
     else if (type == "string") read_string(path);
+    else if (type == "wstring") throw InputError("message definition: wstring is not supported: must be string");
     else read_message(type, path);
   }
 
@@ -184,8 +200,9 @@ class FieldReader {
   std::vector<RosField> fields_;
 };
 
+/// Returns the fields of a message, none unless `keeps_fields`. `num_left`: number of bytes after the last field.
 std::vector<RosField> read_fields(const std::string& type, const std::string& definition, std::string_view bytes,
-                                  bool keeps_fields) {
+                                  bool keeps_fields, std::size_t& num_left) {
   const Types types = parse_definition(type, definition);
   try {
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast): only read from
@@ -194,6 +211,7 @@ std::vector<RosField> read_fields(const std::string& type, const std::string& de
     cdr.read_encapsulation();
     FieldReader reader(types, cdr, bytes.size(), keeps_fields);
     reader.read_message(short_name(type), "");
+    num_left = bytes.size() - cdr.getSerializedDataLength();
     return reader.take_fields();
   } catch (const eprosima::fastcdr::exception::NotEnoughMemoryException&) {
     throw InputError("not a " + type + ": the message is cut off");
@@ -205,11 +223,15 @@ std::vector<RosField> read_fields(const std::string& type, const std::string& de
 }  // namespace
 
 std::vector<RosField> ros_fields(const std::string& type, const std::string& definition, std::string_view bytes) {
-  return read_fields(type, definition, bytes, true);
+  std::size_t num_left = 0;
+  return read_fields(type, definition, bytes, true, num_left);
 }
 
 void check_ros_message(const std::string& type, const std::string& definition, std::string_view bytes) {
-  read_fields(type, definition, bytes, false);
+  if (!is_type_name(type)) throw InputError(fmt::format("type {}: must be PACKAGE/msg/NAME", on_one_line(type)));
+  std::size_t num_left = 0;
+  read_fields(type, definition, bytes, false, num_left);
+  if (num_left > kMaxPadding) throw InputError(fmt::format("not a {}: {} bytes follow the last field", type, num_left));
 }
 
 }  // namespace patrol::io

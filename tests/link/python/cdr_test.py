@@ -109,6 +109,18 @@ class Cdr(unittest.TestCase):
             "test_msgs/msg/Short", f"Point p\nHeader h\n{LINE}\n" + DEFINITION.split(f"{LINE}\n", 1)[1])._fields]
         self.assertEqual(names, ["geometry_msgs/Point", "std_msgs/Header"])
 
+    def test_a_type_without_fields_has_one_byte(self):
+        for text in ("Empty[] all\nuint8 last\n", "Empty one\nuint8 last\n", "uint8 FIRST=1\n"):
+            definition = text + f"{LINE}\nMSG: test_msgs/Empty\nuint8 NONE=0\n"
+            kind = cdr.message_type("test_msgs/msg/Outer", definition)
+            message = kind(**{"last": 7} if "last" in text else {})
+            if "all" in text:
+                message.all += [message.element("all"), message.element("all")]
+            theirs = _dynamic.generate_dynamic("test_msgs/msg/Outer", definition)["test_msgs/msg/Outer"](message.encode())
+            self.assertEqual(getattr(theirs, "last", 7), 7)
+            self.assertEqual(kind.decode(message.encode()).encode(), message.encode())
+        self.assertEqual(cdr.message_type("std_msgs/msg/Empty", "")().encode(), b"\x00\x01\x00\x00\x00")
+
     def test_big_endian_messages_are_read(self):
         data = b"\x00\x00\x00\x00" + struct.pack(">dd", 1.5, -2.0)
         self.assertEqual(as_plain(POINT.decode(data)), {"x": 1.5, "y": -2.0})
