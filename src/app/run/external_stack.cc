@@ -33,16 +33,17 @@ using link::LinkFault;
 constexpr std::chrono::seconds kTimeToEnd{2};         ///< of the process after the last turn
 constexpr std::chrono::milliseconds kTimeToDie{200};  ///< of a process whose connection has closed
 constexpr std::size_t kMaxNameBytes = 200;
+constexpr double kMinResolution_m = 1e-4;
 constexpr Time kStampTolerance = std::chrono::seconds(1);  ///< of stamps before the start and after the turn
 
 bool has_finite_numbers(const stack::StackMessage& message) {
   return std::visit([](const auto& content) { return io::has_finite_numbers(content); }, message);
 }
 
-/// Returns whether the cells of a map have a size.
+/// Returns whether the cells of a map have a size of at least 0.1 mm.
 bool has_resolution(const stack::StackMessage& message) {
   const auto* update = std::get_if<MapUpdate>(&message);
-  return update == nullptr || update->map.geometry().resolution_m > 0.0;
+  return update == nullptr || update->map.geometry().resolution_m >= kMinResolution_m;
 }
 
 /// Returns whether the rotations of a trajectory, which are written to files as they are, are unit quaternions.

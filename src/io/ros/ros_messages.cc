@@ -1,7 +1,12 @@
 // Codecs of the messages of the stack and of the ground truth, and readers of single fields of a message.
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "io/ros/ros_codec.h"
 
@@ -87,6 +92,29 @@ void describe(Codec& codec, ParticleSet& particles) {
   }
 }
 
+/// Returns the decimal with the fewest digits that a float32 represents: 0.05 for the float32 next to it.
+inline double shortest_decimal(float value) {
+  std::array<char, 64> digits{};
+  const std::to_chars_result written = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  double decimal = value;
+  std::from_chars(digits.data(), written.ptr, decimal);
+  return decimal;
+}
+
+/// Throws DecodeError if a grid is too far from the origin of its frame to compute with its cells.
+inline void check_extent(const GridGeometry& geometry) {
+  constexpr double kMaxExtent_m = 1e7;                        // contains the coordinates of map projections
+  constexpr double kMaxCells = 1e9, kMinResolution_m = 1e-4;  // an index of a cell is an int
+  const double limit_m = std::min(kMaxExtent_m, kMaxCells * std::max(geometry.resolution_m, kMinResolution_m));
+  const Eigen::Vector2d size_m = geometry.resolution_m * Eigen::Vector2d(geometry.width, geometry.height);
+  for (const Eigen::Vector2d& corner_m : {geometry.origin_m, Eigen::Vector2d(geometry.origin_m + size_m)}) {
+    if (corner_m.cwiseAbs().maxCoeff() > limit_m) {
+      throw DecodeError(fmt::format("map reaches to ({:g}, {:g}) m: must be within {:.0f} m of the origin of its frame",
+                                    corner_m.x(), corner_m.y(), limit_m));
+    }
+  }
+}
+
 inline bool is_identity(const Eigen::Quaterniond& rotation) {
   constexpr double kTolerance = 1e-4;  // 1 cm at 50 m
   return rotation.vec().norm() <= kTolerance && std::abs(std::abs(rotation.w()) - 1.0) <= kTolerance;
@@ -112,11 +140,11 @@ void describe(Codec& codec, MapUpdate& update) {
           "orientation of the origin must be the identity (x, y, z = 0, w = 1): rotated maps are not "
           "supported");
     }
-    // A float32 cannot represent 0.05: round to the tenth of a millimeter.
-    geometry = {.resolution_m = std::round(geometry.resolution_m * 1e4) / 1e4,
+    geometry = {.resolution_m = shortest_decimal(static_cast<float>(geometry.resolution_m)),
                 .width = static_cast<int>(width),
                 .height = static_cast<int>(height),
                 .origin_m = origin.position.head<2>()};
+    check_extent(geometry);
     if (cells.size() != geometry.size()) throw DecodeError("number of map cells does not match its size");
     update.map = OccupancyGrid(geometry);
     update.map.values() = std::move(cells);

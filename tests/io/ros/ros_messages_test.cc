@@ -296,6 +296,30 @@ TEST(RosFields, ReadEveryMessageByItsDefinitionAlone) {
   EXPECT_EQ(fields_of(test::sample_transforms()).at("transforms[0].child_frame_id"), "\"odom\"");
 }
 
+// A float32 does not represent 0.05, 0.1 or 1/30: the shortest decimal is meant.
+TEST(Decode, MapKeepsAResolutionThatIsNoMultipleOfATenthOfAMillimeter) {
+  const auto read = [](double resolution_m) {
+    return there_and_back(MapUpdate{.stamp = {}, .map = OccupancyGrid({.resolution_m = resolution_m})})
+        .map.geometry()
+        .resolution_m;
+  };
+  for (const double resolution_m : {0.05, 0.1, 0.02, 0.0254, 0.03125, 0.03333, 0.0333333, 1.0, 0.0001, 12.3456})
+    EXPECT_EQ(read(resolution_m), resolution_m);
+  EXPECT_NEAR(read(1.0 / 30.0), 1.0 / 30.0, 4e-9);  // spacing of float32
+}
+
+TEST(Decode, AMapFarFromTheOriginOfItsFrameIsRefused) {
+  const auto read = [](double x_m, double y_m) {
+    there_and_back(MapUpdate{
+        .stamp = {}, .map = OccupancyGrid({.resolution_m = 0.05, .width = 1, .height = 1, .origin_m = {x_m, y_m}})});
+  };
+  EXPECT_NO_THROW(read(-500'000.0, 5'400'000.0));  // UTM
+  for (const double far_m : {1e300, -1e300, 2e7}) {
+    EXPECT_THROW(read(far_m, 0.0), DecodeError);
+    EXPECT_THROW(read(0.0, far_m), DecodeError);
+  }
+}
+
 TEST(RosFields, BytesThatDoNotFitTheDefinitionAreRefused) {
   const std::string type = kRosType<Imu>;
   EXPECT_THROW(ros_fields(type, ros_definition(type), "\x00\x01"), InputError);
