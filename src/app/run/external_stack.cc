@@ -46,13 +46,10 @@ bool has_resolution(const stack::StackMessage& message) {
   return update == nullptr || update->map.geometry().resolution_m >= kMinResolution_m;
 }
 
-/// Returns whether the rotations of a trajectory, which are written to files as they are, are unit quaternions.
-bool has_unit_quaternions(const stack::StackMessage& message) {
-  constexpr double kTolerance = 1e-3;
-  const auto* estimate = std::get_if<TrajectoryEstimate>(&message);
-  return estimate == nullptr || std::ranges::all_of(estimate->T_map_body, [](const StampedPose& stamped) {
-           return std::abs(stamped.pose.rotation.norm() - 1.0) < kTolerance;
-         });
+/// Returns whether the rotations of a message are unit quaternions. `content`: of the message; its planar poses no
+/// longer have them.
+bool has_unit_quaternions(const stack::StackMessage& content, std::string_view cdr) {
+  return std::visit([&]<typename Content>(const Content&) { return io::has_unit_quaternions<Content>(cdr); }, content);
 }
 
 /// Returns the stamps of a message: that of its header and, of a trajectory, those of its poses.
@@ -340,7 +337,7 @@ PublishedMessage checked_message(link::PublishedMessage message, const StampRang
   }
   if (!has_finite_numbers(*checked.content)) refuse("contains a number that is not finite");
   if (!has_resolution(*checked.content)) refuse("resolution must be at least 0.0001 m");
-  if (!has_unit_quaternions(*checked.content)) refuse("contains a quaternion whose norm is not 1");
+  if (!has_unit_quaternions(*checked.content, checked.cdr)) refuse("contains a quaternion whose norm is not 1");
   return checked;
 }
 

@@ -38,6 +38,7 @@ struct Writer {
 struct Reader {
   Cdr& cdr;
   RosNames names{};
+  bool has_unit_quaternions = true;  ///< of the poses read before
   static constexpr bool kWrites = false;
   template <typename T>
   void operator()(T& value) {
@@ -127,6 +128,11 @@ void pose3(Codec& codec, Pose3& pose) {
   codec(pose.rotation.y());
   codec(pose.rotation.z());
   codec(pose.rotation.w());
+  if constexpr (!Codec::kWrites) {
+    constexpr double kTolerance = 1e-3;
+    const bool is_unit = std::abs(pose.rotation.norm() - 1.0) < kTolerance;
+    codec.has_unit_quaternions = codec.has_unit_quaternions && is_unit;
+  }
 }
 
 template <typename Codec>
@@ -255,6 +261,17 @@ Message decode(std::string_view bytes) {
 }
 
 template <typename Message>
+bool has_unit_quaternions(std::string_view bytes) {
+  Message message;
+  bool has_unit = false;
+  ros::read_cdr(bytes, kRosType<Message>, [&](ros::Reader& reader) {
+    describe(reader, message);
+    has_unit = reader.has_unit_quaternions;
+  });
+  return has_unit;
+}
+
+template <typename Message>
 bool has_finite_numbers(const Message& message) {
   Message copy = message;
   ros::FiniteCheck check;
@@ -264,11 +281,13 @@ bool has_finite_numbers(const Message& message) {
 
 }  // namespace patrol::io
 
-/// Instantiates `encode`, `decode` and `has_finite_numbers` of a message with a `describe` function above.
+/// Instantiates `encode`, `decode`, `has_finite_numbers` and `has_unit_quaternions` of a message with a `describe`
+/// function above.
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): a template cannot instantiate others
-#define PATROL_ROS_MESSAGE(Message)                             \
-  template std::string encode(const Message&, const RosNames&); \
-  template bool has_finite_numbers(const Message&);             \
+#define PATROL_ROS_MESSAGE(Message)                              \
+  template std::string encode(const Message&, const RosNames&);  \
+  template bool has_finite_numbers(const Message&);              \
+  template bool has_unit_quaternions<Message>(std::string_view); \
   template Message decode<Message>(std::string_view)
 
 /// Instantiates `encode` and `decode` of a sensor message. `fields`: fields of its ROS type; "" for a type of

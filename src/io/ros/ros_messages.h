@@ -122,6 +122,10 @@ Message decode(std::string_view bytes);
 template <typename Message>
 bool has_finite_numbers(const Message& message);
 
+/// Returns whether the norms of all quaternions in the bytes of a message are 1, to 0.001. Throws DecodeError.
+template <typename Message>
+bool has_unit_quaternions(std::string_view bytes);
+
 /// Header of a message, as it is in the bytes.
 struct MessageHeader {
   std::int32_t seconds = 0;

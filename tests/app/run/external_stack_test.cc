@@ -74,6 +74,43 @@ TEST(CheckedMessage, RefusesAMapOfResolution0ByItsResolution) {
             "message on /map: resolution must be at least 0.0001 m");
 }
 
+TEST(CheckedMessage, RefusesAResolutionBelowATenthOfAMillimeter) {
+  const auto refusal = [](double resolution_m) {
+    return refusal_of(published(MapUpdate{
+        .stamp = {}, .map = OccupancyGrid({.resolution_m = resolution_m, .width = 1, .height = 1}, kUnknown)}));
+  };
+  EXPECT_EQ(refusal(0.00009), "message on /map: resolution must be at least 0.0001 m");
+  EXPECT_EQ(refusal(0.0001), "");
+}
+
+TEST(CheckedMessage, RefusesQuaternionsWhoseNormIsNot1OnEveryTopicWithAPose) {
+  const auto with_w = [](link::PublishedMessage message, double w) {
+    const double one = 1.0;
+    const std::size_t at = message.cdr.find(std::string(reinterpret_cast<const char*>(&one), sizeof one));
+    message.cdr.replace(at, sizeof w, reinterpret_cast<const char*>(&w), sizeof w);
+    return message;
+  };
+  const stack::StackMessage all[] = {
+      OdometryEstimate{},
+      PoseEstimate{},
+      UwbPoseEstimate{},
+      SiteRegistration{},
+      ParticleSet{.stamp = {}, .T_map_body = {{}}, .weights = {0.5}},
+      Path{.stamp = {}, .T_map_body = {{}}},
+      TrajectoryEstimate{.stamp = {}, .T_map_body = {{}}},
+      Event{},
+  };
+  for (const stack::StackMessage& one : all) {
+    const link::PublishedMessage message = std::visit([](const auto& content) { return published(content); }, one);
+    EXPECT_EQ(refusal_of(with_w(message, 1.0)), "") << message.topic;
+    EXPECT_EQ(refusal_of(with_w(message, -1.0)), "") << message.topic;
+    for (const double w : {0.0, 5.0, 0.99}) {
+      EXPECT_EQ(refusal_of(with_w(message, w)),
+                "message on " + message.topic + ": contains a quaternion whose norm is not 1");
+    }
+  }
+}
+
 constexpr StampRange kAtTwoSeconds{.from = -1s, .to = 3s};
 
 std::string refusal_at_two_seconds(const auto& message) {
