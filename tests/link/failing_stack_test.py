@@ -82,7 +82,18 @@ class FailingStack(unittest.TestCase):
         out, _ = self.run_until(1.0, DIES)
         done = stack_runs.verify(out)
         self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, r"log\.mcap: its stack failed at 0\.980 s: only a complete run can be verified")
+        self.assertRegex(done.stderr, r"log\.mcap: its stack failed after its turn at 0\.980 s: only a complete run can be verified")
+
+    def test_verify_refuses_a_command_before_it_simulates(self):
+        done = run(self.path / "run", write_stack(self.path, "stack.py", AT.format(at_ns=0, action="pass")), time_limit_s=0.5)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        for stack, reason in (("no-such-program", "stack no-such-program: program not found"),
+                              ("python3 'a", "quotation mark is not closed"),
+                              ("tcp:localhost", "must be unix:PATH or tcp:HOST:PORT")):
+            done = stack_runs.verify(self.path / "run", stack)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn(reason, done.stderr)
+            self.assertNotIn("rerunning", done.stderr)
 
     def test_a_run_whose_stack_failed_in_its_first_turn_cannot_be_verified(self):
         out, _ = self.run_until(0.0, DIES)

@@ -154,6 +154,16 @@ class SameBytes(unittest.TestCase):
         self.assertGreater(len(times), 90)
         self.assertEqual({later - earlier for earlier, later in zip(times, times[1:])}, {20_000_000})
 
+    def test_a_run_whose_log_begins_with_its_values_as_built_is_fed_to_the_same_log_and_the_copy_is_not_verified(self):
+        straight = write_stack(self.path, "straight.py", STRAIGHT)  # publishes in its first turn
+        as_built = self.run_to("as_built", straight, settings=["as_built.enabled=true"], time_limit_s=1.0)
+        self.assertEqual(messages(as_built)[1][0], "/ground_truth/as_built")  # after /tf_static
+        feed(as_built, self.path / "fed", straight)
+        self.assertEqual((self.path / "fed/log.mcap").read_bytes(), (as_built / "log.mcap").read_bytes())
+        done = verify(self.path / "fed")
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertRegex(done.stderr, r"\Apatrol: .*/fed: was made by patrol feed, .*: verify the run that was fed\n\Z")
+
     def test_feed_refuses_to_overwrite_the_run(self):
         done = feed(self.inside, self.inside)
         self.assertEqual(done.returncode, 2)

@@ -58,7 +58,7 @@ ExitCode feed_run(const FeedOptions& options) {
                        .is_interrupted = [&] { return observer.is_interrupted(); }});
   const RunDirectory directory = begin_run_directory(options.out);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
-  save_scenario(directory.scenario(), scenario, fmt::format("stack fed with {}", fed.log().string()));
+  save_scenario(directory.scenario(), scenario, kFedComment + fed.log().string());
   const RunOutcome outcome = feed_loop(fed.log(), files, tick, *stack, directory.log(), observer);
   if (outcome.end == RunEnd::kInterrupted) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", directory.root.string());

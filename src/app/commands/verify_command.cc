@@ -1,3 +1,4 @@
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -20,9 +21,25 @@
 #include "core/error.h"
 #include "io/json/metrics_json.h"
 #include "io/logs/log_compare.h"
+#include "link/socket.h"
+#include "link/stack_process.h"
 
 namespace patrol::app {
 namespace {
+
+/// Returns whether a scenario of a run directory was written by `patrol feed`.
+bool is_of_feed(const std::filesystem::path& scenario) {
+  std::ifstream stream(scenario);
+  std::string line;
+  std::getline(stream, line);
+  return line.starts_with(std::string("# ") + kFedComment);
+}
+
+/// Throws InputError if the command or the address of a stack is invalid.
+void check_stack(const std::string& command) {
+  if (link::is_address(command)) link::parse_address(command);
+  else if (!command.empty()) link::check_program(link::command_words(command).front());
+}
 
 void throw_if_ended_early(const RunOutcome& outcome) {
   if (outcome.end == RunEnd::kInterrupted) throw std::runtime_error("interrupted; nothing compared");
@@ -41,9 +58,16 @@ ExitCode verify_command(const VerifyOptions& options) {
   const RunDirectory directory = open_run_directory(options.run);
   if (std::filesystem::exists(incomplete_marker(directory.root)))
     throw InputError(fmt::format("{}: incomplete run; cannot be verified", directory.root.string()));
+  if (is_of_feed(directory.scenario())) {
+    throw InputError(
+        fmt::format("{}: was made by patrol feed, and the answers in it had no effect on the robot: verify the run "
+                    "that was fed",
+                    directory.root.string()));
+  }
+  if (options.stack) check_stack(*options.stack);
   const std::vector<StackTurnRecord> turns = read_turn_records(directory.log());
   if (!turns.empty() && !turns.back().is_last) {
-    throw InputError(fmt::format("{}: its stack failed at {:.3f} s: only a complete run can be verified",
+    throw InputError(fmt::format("{}: its stack failed after its turn at {:.3f} s: only a complete run can be verified",
                                  directory.log().string(), to_seconds(turns.back().turn)));
   }
   if (std::filesystem::exists(directory.branch()) &&

@@ -36,6 +36,9 @@ struct RunDirectory {
   bool is_complete() const;
 };
 
+/// Beginning of the comment of a scenario whose stack was fed with the log of a run.
+inline constexpr const char* kFedComment = "stack fed with ";
+
 /// Creates the directory and marks it incomplete (output_directory.h). Removes the files of an earlier run. Throws
 /// InputError if results of that run have not been uploaded.
 RunDirectory begin_run_directory(const std::filesystem::path& root);

@@ -123,14 +123,15 @@ class FeedLoop {
   }
 
   /// Writes the messages of the simulator up to a time, and delivers those for the stack. The ground truth
-  /// of that time is written after the answers, unless the run ends.
+  /// of that time is written after the answers, unless the run ends. The true values as built precede the first turn.
   void deliver_until(Time now, bool is_end) {
     while (true) {
       if (!next_input_) next_input_ = read_input();
       if (!next_input_) return;
       link::DeliveredMessage& message = next_input_->message;
       const bool is_for_stack = io::is_stack_input(message.topic);
-      if (message.log_time > now || (!is_for_stack && !is_end && message.log_time == now)) return;
+      const bool is_before_turn = is_for_stack || message.topic == io::kTopic<AsBuiltTruth>;
+      if (message.log_time > now || (!is_before_turn && !is_end && message.log_time == now)) return;
       log_.write_foreign(message.log_time, message.topic, next_input_->type, next_input_->definition, message.cdr);
       if (message.topic == io::kTopic<FallReport>) fall_time_ = message.log_time;
       if (is_for_stack) stack_.deliver(std::move(message));
