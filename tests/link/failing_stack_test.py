@@ -179,6 +179,13 @@ class FailingStack(unittest.TestCase):
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertEqual(done.stderr.count("patrol: warning: frame of /pose is banana: it is taken as map"), 1, done.stderr)
 
+    def test_a_topic_that_the_simulator_does_not_send_is_a_warning(self):
+        text = AT.format(at_ns=0, action="pass").replace('["/scan"]', '["/scan", "/scann", "/cmd_vel", "/scann"]')
+        _, done = self.run_stack(text, time_limit_s=0.5)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertEqual(done.stderr, "patrol: warning: the stack wants messages on /cmd_vel: the simulator sends none\n"
+                                      "patrol: warning: the stack wants messages on /scann: the simulator sends none\n")
+
     def test_a_topic_of_the_stacks_own_is_in_the_log(self):
         out, done = self.run_until(1.0, "turn.client.declare('/mine', 'my_msgs/msg/Mine', 'float64 x\\n'); "
                                         "turn.publish('/mine', turn.client.type_of('/mine')(x=1.5))", time_limit_s=1.5)

@@ -143,7 +143,7 @@ void ExternalStack::connect() {
   server_->declare(link::kSiteMapTopic, io::kRosType<MapUpdate>);
   server_->send(io::kStaticTransforms.topic, Time{}, documents_.static_transforms, false);
   if (!documents_.known_map.empty()) server_->send(link::kSiteMapTopic, Time{}, documents_.known_map, false);
-  server_->greet(documents_.hello);
+  warn_of_topics(server_->greet(documents_.hello).topics);
 }
 
 void ExternalStack::start_process() {
@@ -260,6 +260,19 @@ void ExternalStack::fail(const LinkError& error, const std::string& when) {
 StampRange ExternalStack::stamp_range() const {
   if (!documents_.recorded.empty()) return {};
   return {.from = -kStampTolerance, .to = std::max(turn_, newest_stamp_) + kStampTolerance};
+}
+
+/// Warns of topics that the stack wants to receive and that the simulator never sends.
+void ExternalStack::warn_of_topics(const std::vector<std::string>& wanted) const {
+  const auto is_sent = [&](const std::string& topic) {
+    return io::is_stack_input(topic) || topic == io::kStaticTransforms.topic || topic == link::kSiteMapTopic ||
+           std::ranges::any_of(documents_.recorded, [&](const auto& channel) { return channel.topic == topic; });
+  };
+  for (const std::string& topic : std::set<std::string>(wanted.begin(), wanted.end())) {
+    if (is_sent(topic)) continue;
+    fmt::print(stderr, "patrol: warning: the stack wants messages on {}: the simulator sends none\n",
+               quoted_name(topic));
+  }
 }
 
 void ExternalStack::warn_of_frame(const PublishedMessage& message) {

@@ -69,6 +69,7 @@ class ExternalStack final : public StackPort {
   [[noreturn]] void fail(const link::LinkError& error, const std::string& when);
   double cpu_seconds();
   StampRange stamp_range() const;
+  void warn_of_topics(const std::vector<std::string>& wanted) const;
   void warn_of_frame(const PublishedMessage& message);
 
   StackDocuments documents_;
