@@ -52,7 +52,7 @@ RunVerdict verdict_of(const RunOutcome& outcome, const std::vector<KidnapSetting
   if (verdict.end == RunStatus::kFall) {
     verdict.message = fmt::format("the robot fell at {:.2f} s", to_seconds(outcome.duration));
   } else if (verdict.end == RunStatus::kTimeLimit) {
-    verdict.message = fmt::format("{:.0f} s", to_seconds(outcome.duration));
+    verdict.message = fmt::format("{:g} s", to_seconds(outcome.duration));
   } else if (!outcome.stack_failure.empty()) {
     verdict.message = outcome.stack_failure;
   }

@@ -40,6 +40,11 @@ TEST(RunVerdict, AFallAndATimeLimitComeBeforeWhatTheyMadeItMiss) {
   EXPECT_EQ(verdict_of(ended(RunEnd::kTimeLimit, 33.0), {}, {}, {make_check(false)}).code(), ExitCode::kTimeLimit);
 }
 
+TEST(RunVerdict, ATimeLimitIsWrittenWithItsFraction) {
+  EXPECT_EQ(verdict_of(ended(RunEnd::kTimeLimit, 0.3), {}, {}, {}).message, "0.3 s");
+  EXPECT_EQ(verdict_of(ended(RunEnd::kTimeLimit, 600.0), {}, {}, {}).message, "600 s");
+}
+
 TEST(RunVerdict, KidnapsThatTheRunDidNotReachAreNotExecuted) {
   RunOutcome outcome = ended(RunEnd::kMissionOver, 60.0);
   outcome.num_kidnaps = 1;
