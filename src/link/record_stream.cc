@@ -87,7 +87,7 @@ io::McapMessage RecordStream::read() {
     if (const std::optional<io::McapMessage> message = parser_.next()) {
       if (message->channel.topic != kControlTopic<Failure>) return *message;
       const auto failure = control_message<Failure>(*message);
-      throw LinkError(LinkFault::kInvalid, io::on_one_line(failure.text.substr(0, kMaxTextBytes)));
+      throw LinkError(LinkFault::kInvalid, io::on_one_line(io::first_bytes(failure.text, kMaxTextBytes)));
     }
     wait_.check("no answer");  // a side that keeps sending has no more time than a silent one
     char* const room = parser_.prepare(kReceiveBytes);
@@ -98,9 +98,10 @@ io::McapMessage RecordStream::read() {
 template <typename Message>
 Message control_message(const io::McapMessage& message) {
   if (message.channel.topic != kControlTopic<Message>) {
-    throw LinkError(LinkFault::kInvalid, fmt::format("message on {} where one on {} is due",
-                                                     io::on_one_line(message.channel.topic.substr(0, kMaxTextBytes)),
-                                                     kControlTopic<Message>));
+    throw LinkError(LinkFault::kInvalid,
+                    fmt::format("message on {} where one on {} is due",
+                                io::on_one_line(io::first_bytes(message.channel.topic, kMaxTextBytes)),
+                                kControlTopic<Message>));
   }
   try {
     return io::decode<Message>(message.cdr);

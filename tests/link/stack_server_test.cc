@@ -311,6 +311,23 @@ TEST(StackServer, TheTextOfAFailureReachesTheOtherSide) {
   EXPECT_EQ(error, "division by zero\\nin line 3");  // one line
 }
 
+TEST(StackServer, TheTextOfAFailureIsCutBetweenTwoCharacters) {
+  std::string umlauts;
+  for (int i = 0; i < 500; ++i) umlauts += "ä";
+  const std::string error = run_both(
+      [](StackServer& server) {
+        server.greet(kHello);
+        server.turn({}, false);
+      },
+      [&](Socket socket) {
+        StackClient client(std::move(socket));
+        client.begin("unlucky", {}, 50ms);
+        client.next_turn();
+        client.fail("a" + umlauts);
+      });
+  EXPECT_EQ(error, "a" + umlauts.substr(0, 398));  // 399 of at most 400 bytes
+}
+
 // The simulator notices by its next messages that the stack has gone; the reason is already there to be read.
 TEST(StackServer, TheTextOfAStackThatHasAlreadyClosedIsRead) {
   auto [server_end, client_end] = connected_pair();

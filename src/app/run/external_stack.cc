@@ -78,7 +78,7 @@ std::optional<std::string> expected_frame(const stack::StackMessage& content) {
   return is_fixed ? std::optional(frame) : std::nullopt;
 }
 
-std::string quoted_name(const std::string& name) { return io::on_one_line(name.substr(0, kMaxNameBytes)); }
+std::string quoted_name(const std::string& name) { return io::on_one_line(io::first_bytes(name, kMaxNameBytes)); }
 
 }  // namespace
 

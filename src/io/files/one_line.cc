@@ -54,6 +54,16 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+std::string_view first_bytes(std::string_view text, std::size_t max_bytes) {
+  if (text.size() <= max_bytes) return text;
+  constexpr std::size_t kMaxLength = 4;  // of a character
+  for (std::size_t length = 1; length < kMaxLength && length <= max_bytes; ++length) {
+    const std::size_t start = max_bytes - length;
+    if (utf8_length(text.substr(start)) > length) return text.substr(0, start);
+  }
+  return text.substr(0, max_bytes);
+}
+
 std::string on_one_line(std::string_view text) {
   std::string line;
   while (!text.empty()) {
