@@ -50,17 +50,18 @@ ExitCode feed_run(const FeedOptions& options) {
   io::last_message_time(fed.log());  // throws before earlier output is removed
 
   ProgressLine observer("feed " + name, scenario.time_limit_s);
-  const std::unique_ptr<StackPort> stack =
-      make_stack_port(scenario, files,
-                      {.scenario = name,
-                       .data_root = data_root,
-                       .output = RunDirectory{options.out}.stack_output(),
-                       .is_interrupted = [&] { return observer.is_interrupted(); }});
+  std::unique_ptr<StackPort> stack = make_stack_port(scenario, files,
+                                                     {.scenario = name,
+                                                      .data_root = data_root,
+                                                      .output = RunDirectory{options.out}.stack_output(),
+                                                      .is_interrupted = [&] { return observer.is_interrupted(); }});
   const RunDirectory directory = begin_run_directory(options.out);
   io::save_junit(directory.junit(), {unfinished_suite(name, junit_properties(scenario))});
   save_scenario(directory.scenario(), scenario, kFedComment + fed.log().string());
   const RunOutcome outcome = feed_loop(fed.log(), files, tick, *stack, directory.log(), observer);
-  if (outcome.end == RunEnd::kInterrupted) {
+  stack.reset();  // ends a stack in another process
+  observer.end_simulation();
+  if (outcome.end == RunEnd::kInterrupted || observer.is_interrupted()) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", directory.root.string());
     return ExitCode::kProgramFailed;
   }

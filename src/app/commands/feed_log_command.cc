@@ -210,7 +210,7 @@ ExitCode feed_scans_of_log(const FeedOptions& options) {
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.input, settings.mapping.log);
   const std::string adaptation = adapt_to_log(options.input, settings.mapping);
 
-  const InterruptGuard guard;
+  InterruptGuard guard;
   std::optional<OutputLock> lock;
   const FedAnswers fed = feed_scans(
       *log, options.input.filename().string(),
@@ -220,6 +220,7 @@ ExitCode feed_scans_of_log(const FeedOptions& options) {
         io::save_settings(options.out / "settings.yaml", settings);
       },
       options.out / "log.mcap", guard);
+  guard.release();  // a signal ends the scoring
   return complete_fed_log(options, references, io::to_text(log->summary()) + (options.stack ? "" : adaptation),
                           {{"scans", log->summary().num_scans}}, fed);
 }
@@ -241,11 +242,12 @@ ExitCode feed_messages_of_log(const FeedOptions& options) {
   StackDocuments documents = log_documents(options.input.filename().string(), {}, {});
   documents.recorded = recorded.channels;
 
-  const InterruptGuard guard;
+  InterruptGuard guard;
   std::unique_ptr<StackPort> stack = connect_stack(options, settings.stack, guard, std::move(documents));
   const OutputLock lock = begin_output(options.out, kFedLog);
   io::save_settings(options.out / "settings.yaml", settings);
   const FedAnswers fed = feed_messages(options.input, recorded, std::move(stack), options.out / "log.mcap", guard);
+  guard.release();  // a signal ends the scoring
   return complete_fed_log(options, references, text_of(recorded), {{"messages", recorded.num_messages}}, fed);
 }
 

@@ -136,6 +136,9 @@ class ObserverGroup final : public RunObserver {
     for (RunObserver* one : observers_) keeps_running = one->keep_running(now, distance_m) && keeps_running;
     return keeps_running;
   }
+  void end_simulation() override {
+    for (RunObserver* one : observers_) one->end_simulation();
+  }
 
  private:
   std::vector<RunObserver*> observers_;

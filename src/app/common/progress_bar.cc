@@ -75,7 +75,11 @@ InterruptGuard::InterruptGuard() {
   }
 }
 
-InterruptGuard::~InterruptGuard() {
+InterruptGuard::~InterruptGuard() { release(); }
+
+void InterruptGuard::release() {
+  if (is_released_) return;
+  is_released_ = true;
   for (const int signal : kCounted) {
     if (std::signal(signal, SIG_DFL) == SIG_IGN && signal == SIGHUP) std::signal(signal, SIG_IGN);
   }

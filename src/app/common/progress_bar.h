@@ -33,8 +33,8 @@ class ProgressBar {
 /// Empty during the first second, and for a fraction of 0 or 1.
 std::string remaining_text(double elapsed_s, double fraction);
 
-/// Counts SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal) during its lifetime, instead of ending the process at
-/// the first one. A SIGHUP that the caller ignores (nohup) stays ignored.
+/// Counts SIGINT (Ctrl-C), SIGTERM and SIGHUP (closed terminal) until `release` or its destruction, instead of ending
+/// the process at the first one. A SIGHUP that the caller ignores (nohup) stays ignored.
 class InterruptGuard {
  public:
   InterruptGuard();
@@ -43,6 +43,11 @@ class InterruptGuard {
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
   bool is_interrupted() const;
+  /// Ends the counting: from now on a signal ends the process. `is_interrupted` keeps its value.
+  void release();
+
+ private:
+  bool is_released_ = false;
 };
 
 }  // namespace patrol::app

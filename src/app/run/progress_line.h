@@ -15,6 +15,8 @@ class ProgressLine final : public RunObserver {
 
   bool is_interrupted() const override { return interrupt_.is_interrupted(); }
   bool keep_running(Time now, double distance_m) override;
+  /// Lets signals end the process again.
+  void end_simulation() override { interrupt_.release(); }
 
  private:
   std::string name_;

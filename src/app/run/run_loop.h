@@ -45,6 +45,8 @@ class RunObserver {
   virtual bool is_interrupted() const { return false; }
   /// Called every 0.5 s of simulated time; false stops the run.
   virtual bool keep_running(Time now, double distance_m) = 0;
+  /// Called after the last tick, before the run is scored.
+  virtual void end_simulation() {}
 };
 
 /// Observer that ignores everything.

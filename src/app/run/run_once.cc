@@ -280,7 +280,9 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const ScenarioFiles
     part.save = [&](Time now, std::string state) { snapshots.save({.time = now, .bytes = std::move(state)}); };
   }
   const RunOutcome outcome = run_to_end(scenario, run.simulator, *run.stack, log, observer, part);
-  if (outcome.end == RunEnd::kInterrupted) return std::nullopt;
+  run.stack.reset();  // ends a stack in another process
+  observer.end_simulation();
+  if (outcome.end == RunEnd::kInterrupted || observer.is_interrupted()) return std::nullopt;
 
   return complete_run(directory, scenario, name, run.files, outcome);
 }

@@ -31,7 +31,16 @@ TerminalView::TerminalView(const std::string& name) {
   fmt::print("\033[?1049h\033[?25l\033[2J");  // alternate screen, hidden cursor
 }
 
-TerminalView::~TerminalView() {
+TerminalView::~TerminalView() { restore_screen(); }
+
+void TerminalView::end_simulation() {
+  restore_screen();
+  interrupt_.release();
+}
+
+void TerminalView::restore_screen() {
+  if (!is_shown_) return;
+  is_shown_ = false;
   fmt::print("\033[?25h\033[?1049l");
   std::fflush(stdout);
 }

@@ -9,7 +9,7 @@
 namespace patrol::app {
 
 /// Shows a running simulation in the terminal (`patrol run --watch`), at most ten times a second. Restores the screen
-/// on destruction.
+/// at the end of the simulation or on destruction.
 class TerminalView final : public RunObserver {
  public:
   /// Throws InputError if standard output is not a terminal.
@@ -23,8 +23,13 @@ class TerminalView final : public RunObserver {
   void on_ground_truth(const GroundTruth& truth) override;
   bool is_interrupted() const override { return interrupt_.is_interrupted(); }
   bool keep_running(Time now, double distance_m) override;
+  /// Restores the screen, and lets signals end the process again.
+  void end_simulation() override;
 
  private:
+  void restore_screen();
+
+  bool is_shown_ = true;
   RunView run_;
   std::optional<Pose2> T_world_map_;
   std::optional<Pose2> T_world_body_;

@@ -5,9 +5,11 @@ usage: run_loop_test.py PATROL SOURCE
 """
 import json
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 PATROL = pathlib.Path(sys.argv[1]).resolve()
@@ -32,6 +34,22 @@ def on_turn(turn):
     turn.mission_is_over = turn.now_ns == round({end_s} * 1e9)
 
 patrol_client.run(on_turn, topics=["/scan"], turn_period={period_s})
+"""
+
+# Publishes a map whose scoring takes seconds.
+LARGE_MAP = """
+import numpy
+import patrol_client
+
+def on_turn(turn):
+    turn.publish("/pose", turn.new("/pose"))
+    if turn.is_last:
+        map = turn.new("/map")
+        map.info.resolution, map.info.width, map.info.height = 0.01, 4000, 4000
+        map.data = numpy.full(4000 * 4000, 100, numpy.int8)
+        turn.publish("/map", map)
+
+patrol_client.run(on_turn, topics=["/scan"])
 """
 
 
@@ -77,6 +95,27 @@ class EndOfARun(unittest.TestCase):
         self.assertNotIn("time limit", line)
         self.assertEqual(code, 0)
         self.assertFalse(metrics["mission"]["fell"])
+
+    def test_one_signal_ends_the_scoring(self):
+        (self.path / "worlds/site").mkdir(parents=True)
+        (self.path / "worlds/site/site.xml").write_text(WORLD.replace("0 9.6 -2", "0 0 -9.81"))
+        (self.path / "stack.py").write_text(LARGE_MAP)
+        for ending in (signal.SIGINT, signal.SIGTERM):
+            run = subprocess.Popen([PATROL, "run", "site", "--robot", "wheeled", "--start", "0,0", "--goal", "5,0",
+                                    "--set", "time_limit_s=0.1", "--stack", f"{sys.executable} {self.path / 'stack.py'}",
+                                    "--out", "run"], cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.addCleanup(run.kill)
+            log, deadline = self.path / "run/log.mcap", time.monotonic() + 100
+            while not (log.exists() and log.read_bytes().endswith(b"\x89MCAP0\r\n") and log.stat().st_size > 100):
+                self.assertIsNone(run.poll())
+                self.assertLess(time.monotonic(), deadline)
+                time.sleep(0.05)
+            time.sleep(0.5)
+            run.send_signal(ending)
+            output, errors = run.communicate(timeout=20)
+            self.assertIn(run.returncode, (-ending, 3), (output, errors))  # 3: the stack was still ending
+            self.assertEqual(output, b"")
+            self.assertTrue((self.path / "run/INCOMPLETE").exists())
 
     def test_the_parts_of_a_run_in_one_thread_add_up_to_its_time_at_most(self):
         (self.path / "worlds/site").mkdir(parents=True)
