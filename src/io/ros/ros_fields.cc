@@ -229,6 +229,8 @@ std::vector<RosField> ros_fields(const std::string& type, const std::string& def
 
 void check_ros_message(const std::string& type, const std::string& definition, std::string_view bytes) {
   if (!is_type_name(type)) throw InputError(fmt::format("type {}: must be PACKAGE/msg/NAME", on_one_line(type)));
+  if (bytes.size() >= 2 && (bytes[0] != 0 || (bytes[1] != 0 && bytes[1] != 1)))
+    throw InputError(fmt::format("not a {}: does not begin with the header of CDR", type));
   std::size_t num_left = 0;
   read_fields(type, definition, bytes, false, num_left);
   if (num_left > kMaxPadding) throw InputError(fmt::format("not a {}: {} bytes follow the last field", type, num_left));

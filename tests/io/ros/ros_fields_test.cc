@@ -57,6 +57,18 @@ TEST(CheckRosMessage, TheNameOfATypeHasAPackageAndMsg) {
   EXPECT_EQ(refusal_of("my_msgs2/msg/A_b3", "uint8 a\n", kHead + '\1'), "");
 }
 
+// Fast-CDR reads the header of a parameter list as that of CDR.
+TEST(CheckRosMessage, OtherEncodingsThanCdrAreRefused) {
+  const auto refusal = [](char first, char second) {
+    return refusal_of("my/msg/A", "uint8 a\n", {first, second, 0, 0, 1});
+  };
+  EXPECT_EQ(refusal(0, 0), "");  // big-endian
+  EXPECT_EQ(refusal(0, 1), "");
+  for (const char second : {'\2', '\3', '\7', '\xff'})
+    EXPECT_EQ(refusal(0, second), "not a my/msg/A: does not begin with the header of CDR");
+  EXPECT_NE(refusal(1, 0), "");
+}
+
 TEST(CheckRosMessage, AWideStringIsRefusedByName) {
   EXPECT_EQ(refusal_of("my/msg/W", "wstring s\n", kHead + std::string("\x01\x00\x00\x00\x61\x00", 6)),
             "message definition: wstring is not supported: must be string");
