@@ -288,15 +288,14 @@ std::vector<MetricInfo> metric_infos() {
   Collector collector;
   collector.add("mission", kMission);
   collector.add("course", kCourse);
-  collector.add("pose", kTrajectory,
-                "the online pose (aligned in x, y and heading at its first pose, or by a given map)");
+  collector.add("pose", kTrajectory, "the online pose (aligned at its first pose or by a given map)");
   collector.add("pose", kPose);
   collector.add("pose.site", kTrajectory, "the online pose in the survey frame, by the robot's registration");
   collector.add("pose.aligned", kAligned, "the path by the online poses and the true path after their best fit");
   collector.add("pose.nees", kNees);
   collector.add("registration", kRegistration);
   collector.add("calibration", kCalibration);
-  collector.add("odometry", kTrajectory, "the odometry (aligned in x, y and heading at its first pose)");
+  collector.add("odometry", kTrajectory, "the odometry (aligned at its first pose)");
   collector.add("map", kMap);
   collector.add("localizability", kLocalizability);
   collector.add("navigation", kNavigation);
