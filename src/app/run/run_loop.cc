@@ -365,16 +365,9 @@ void write_published(io::RunLogWriter& log, Time now, const PublishedMessage& me
 
 void set_failure(RunOutcome& outcome, const link::LinkError& error) {
   outcome.stack_failure = error.what();
-  switch (error.fault()) {
-    case link::LinkFault::kInterrupted:
-      outcome.end = RunEnd::kInterrupted;
-      break;
-    case link::LinkFault::kTimeout:
-      outcome.end = RunEnd::kStackSilent;
-      break;
-    default:
-      outcome.end = RunEnd::kStackFailed;
-  }
+  outcome.end = error.fault() == link::LinkFault::kInterrupted ? RunEnd::kInterrupted
+                : error.fault() == link::LinkFault::kTimeout   ? RunEnd::kStackSilent
+                                                               : RunEnd::kStackFailed;
 }
 
 std::string run_until(Time end, const Scenario& scenario, sim::Simulator& simulator, StackPort& stack,

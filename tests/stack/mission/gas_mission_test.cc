@@ -54,8 +54,8 @@ TEST(GasMission, StandsForItsStartWait) {
 // The settling time of odometry begins when it recognizes the standstill.
 TEST(GasMission, StandsUntilTheFirstScanOfTheMapHasComeAfterItsStartWait) {
   GasMission mission(make_settings(), make_route());
-  EXPECT_FALSE(mission.step(from_seconds(2.0), {.awaits_first_scan = true}).task.goal);
-  EXPECT_TRUE(mission.step(from_seconds(2.1), {.awaits_first_scan = false}).task.goal);
+  EXPECT_FALSE(mission.step(from_seconds(2.0), {.pose = {}, .awaits_first_scan = true}).task.goal);
+  EXPECT_TRUE(mission.step(from_seconds(2.1), {.pose = {}, .awaits_first_scan = false}).task.goal);
 }
 
 // The registration moves the survey by 10 cm on the way to the first station, and again while it is measured there.
