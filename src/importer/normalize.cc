@@ -321,6 +321,7 @@ NormalizedRobot Normalizer::run() {
     for (const Support& support : supports_) add_support(support, mass_kg);
   }
   add_sensors();
+  choose_scan_band();
   finish();
   return std::move(result_);
 }

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "core/frames.h"
+#include "importer/scan_band.h"
 #include "importer/source_robot.h"
 
 namespace patrol::importer {
@@ -75,7 +76,8 @@ struct NormalizedRobot {
   double max_speed_mps = 0.0;                       ///< by the slowest driven wheel
   double length_m = 0.0;                            ///< of the collision shapes, along x
   double min_turning_radius_m = 0.0;
-  double leg_m = 0.0;  ///< length of the longest leg; robots with legs only
+  double leg_m = 0.0;                      ///< length of the longest leg; robots with legs only
+  std::optional<ScanBand> scan_band = {};  ///< none: the defaults suit, or the robot has no 2D lidar
   // Mecanum drives, as the settings of wheel_drive.
   std::string roller_pattern = "x";
   double roller_angle_rad = 0.25 * std::numbers::pi;

@@ -158,6 +158,7 @@ class Normalizer {
   void add_frame(const std::string& frame, const Pose3& T_base_frame, const std::string& link);
   void move_housing(const std::string& frame, const std::string& link);
   void choose_preset(const std::string& frame, const SourceSensor& sensor);
+  void choose_scan_band();
   void finish();
 
   std::vector<const SourceLink*> moving_group(const SourceJoint& joint) const;

@@ -37,6 +37,15 @@ std::string mecanum_settings(const NormalizedRobot& robot, double max_speed_mps)
   return text + fmt::format("  max_lateral_speed_mps: {:.2f}\n", max_lateral_mps(robot, max_speed_mps));
 }
 
+/// Returns the row of the stack's settings for a low lidar, or "".
+std::string scan_settings(const NormalizedRobot& robot) {
+  if (!robot.scan_band) return "";
+  std::string row = fmt::format("  scan_leveling: {{min_height_m: {:.2f}", robot.scan_band->min_height_m);
+  if (robot.scan_band->self_filter_radius_m < kDefaultSelfFilterRadius_m)
+    row += fmt::format(", self_filter_radius_m: {:.2f}", robot.scan_band->self_filter_radius_m);
+  return row + "}\n";
+}
+
 /// Returns the settings of a robot on wheels.
 std::string wheel_settings(const NormalizedRobot& robot) {
   const bool is_ackermann = robot.drive == DriveType::kAckermann;
@@ -53,6 +62,7 @@ std::string wheel_settings(const NormalizedRobot& robot) {
   text += "  odometry_source: wheeled\n";
   text += "  odometry:\n";
   text += "    wheeled: {ticks_per_sprocket_turn: 16384}\n";
+  text += scan_settings(robot);
   text += "  navigation:\n";
   text += fmt::format("    kinematics: {}\n", kinematics_of(robot.drive));
   text += "    footprint_rows: 2\n";
@@ -76,6 +86,7 @@ std::string leg_settings(const NormalizedRobot& robot) {
   std::string text = "  hall: {enabled: false}\n";
   text += "stack:\n";
   text += "  odometry_source: legged\n";
+  text += scan_settings(robot);
   text += "  navigation:\n";
   text += "    kinematics: omnidirectional\n";
   text += "    local_planner:\n";

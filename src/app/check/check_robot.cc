@@ -174,6 +174,7 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   robot.lidars = lidars_of(robot.simulator.sensors, robot.description);
   disable_other_sensors(robot.simulator.sensors);
   robot.kind = kind_of(robot.description);
+  robot.scan_leveling = scenario.stack.scan_leveling;
   robot.effective_gauge_ratio = effective_gauge_ratio_of(robot);
   robot.limits = limits_of(robot);
   const bool has_legs = robot.kind == DriveKind::kLegs;

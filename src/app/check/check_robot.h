@@ -9,6 +9,7 @@
 #include "core/geometry/angles.h"
 #include "core/robot_description.h"
 #include "core/sensors/lidar.h"
+#include "localize/scan_leveler_settings.h"
 #include "sim/lidar_scene.h"
 #include "sim/simulator/simulator.h"
 
@@ -55,9 +56,13 @@ struct CheckRobot {
   /// Bound of the heading error per distance: 1 degree per meter, or more if the wheels of both sides of a differential
   /// drive have as-built radii at opposite ends of their tolerance.
   double max_heading_drift_rad_per_m = kDegree;
-  double reaction_s = 0.1;           ///< time in which the firmware follows a command: with legs a period of the gait
-  std::vector<CheckLidar> lidars;    ///< that the settings enable
-  sim::SimulatorSettings simulator;  ///< without world and start pose
+  /// Bound of the error of the yaw rate relative to the commanded one: 15 %. For a rigid chassis on more than four
+  /// wheels, three standard deviations of the gauge ratio by the as-built radii are added.
+  double yaw_tolerance = 0.15;
+  double reaction_s = 0.1;         ///< time in which the firmware follows a command: with legs a period of the gait
+  std::vector<CheckLidar> lidars;  ///< that the settings enable
+  localize::ScanLevelerSettings scan_leveling = {};  ///< of the built-in stack
+  sim::SimulatorSettings simulator;                  ///< without world and start pose
 
   bool turns_in_place() const { return limits.min_turning_radius_m == 0.0; }
 };

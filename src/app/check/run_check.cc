@@ -1,12 +1,14 @@
 #include "app/check/run_check.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
 #include "app/check/blocked_beams.h"
 #include "app/check/check_drive.h"
 #include "app/check/maneuver_figures.h"
+#include "app/check/scan_reach.h"
 #include "app/common/temporary_folder.h"
 #include "io/files/atomic_file.h"
 
@@ -53,6 +55,7 @@ CheckResult run_check(const CheckRobot& robot, const CheckProgress& progress) {
   double total_s = 0.0, done_s = 0.0;
   for (const Maneuver& maneuver : maneuvers) total_s += maneuver.duration_s;
   CheckResult result{.robot = robot, .warnings = warnings_of(blocked_beams(robot, folder.path())), .maneuvers = {}};
+  std::ranges::move(scan_reach_warnings(robot), std::back_inserter(result.warnings));
   for (const Maneuver& maneuver : maneuvers) {
     const auto on_time = [&](double time_s) {
       progress(maneuver.title, (done_s + std::min(time_s, maneuver.duration_s)) / total_s);

@@ -1,0 +1,37 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "importer/normalizer.h"
+
+namespace patrol::importer {
+
+/// Chooses the settings of the leveled scan for a lidar near the ground.
+void Normalizer::choose_scan_band() {
+  const auto lidar = std::ranges::find(result_.links, "lidar", &NormalizedLink::name);
+  if (lidar == result_.links.end() || !lidar->joint) return;
+  // The firmware of legs stands at 0.7 of their length.
+  constexpr double kStance = 0.7;
+  const bool has_legs = result_.drive == DriveType::kLegs;
+  const double ground_m = has_legs ? -kStance * result_.leg_m : ground_m_;
+  const double height_m = lidar->joint->T_parent_link.position.z() - ground_m;
+  double radius_m = 0.0;
+  for (const auto& [name, T_root_link] : T_root_link_) {
+    const SourceLink& link = source_.link(name);
+    for (const Shape& shape : link.collisions.empty() ? link.visuals : link.collisions) {
+      for (const Eigen::Vector3d& point : outline(shape))
+        radius_m = std::max(radius_m, (T_base(name) * point).head<2>().norm());
+    }
+  }
+  result_.scan_band = scan_band_of(height_m, radius_m);
+  if (!result_.scan_band) return;
+  assume("lidar",
+         fmt::format("is {:.2f} m above the ground: its hits are obstacles above {:.2f} m (default {:.2f} m), and it "
+                     "ignores them within {:.2f} m of the middle of the robot (default {:.2f} m)",
+                     height_m, result_.scan_band->min_height_m, kDefaultMinHitHeight_m,
+                     result_.scan_band->self_filter_radius_m, kDefaultSelfFilterRadius_m),
+         fmt::format("stack.scan_leveling in {}.yaml", result_.name));
+}
+
+}  // namespace patrol::importer
