@@ -172,7 +172,7 @@ void add_ground(const GroundSurface& ground, const GridGeometry& grid, ContactGe
     return;
   }
   SiteShape field = contact_shape("contact_ground", SiteShapeType::kHeightField);
-  field.height_field.height_m = ground.height_m;
+  field.height_field = {.height_m = ground.height_m, .is_ground = ground.is_ground};
   contact.shapes.push_back(std::move(field));
   contact.rows.push_back(
       {"ground",

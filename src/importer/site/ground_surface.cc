@@ -295,3 +295,4 @@ GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometr
 }
 
 }  // namespace patrol::importer
+  ground.is_ground = is_known;

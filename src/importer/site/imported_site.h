@@ -34,7 +34,8 @@ enum class SiteShapeType : std::uint8_t { kBox, kCylinder, kSphere, kPlane, kMes
 /// Heights on a regular grid; the height of a vertex is that of the surface at the cell's center; the
 /// geom ends at the centers of the outermost cells.
 struct HeightField {
-  Grid<float> height_m;  ///< in the frame of the shape
+  Grid<float> height_m;              ///< in the frame of the shape
+  std::vector<char> is_ground = {};  ///< [cell]; 0: a drop, or filled in; empty: all are ground
 };
 
 /// Shape of a site. Lengths are in meters.

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "importer/site/ground_slope.h"
 #include "importer/site/mesh_site.h"
 #include "importer/site/mjcf_site.h"
 #include "importer/site/plan_site.h"
@@ -36,6 +37,7 @@ ImportedSite read_site(const SiteImportOptions& options) {
 
 ImportedSite import_site(const SiteImportOptions& options) {
   ImportedSite site = read_site(options);
+  add_slope_rows(site);
   add_mission(options.mission, site);
   return site;
 }
