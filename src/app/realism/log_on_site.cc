@@ -1,6 +1,7 @@
 #include "app/realism/log_on_site.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -54,8 +55,21 @@ Trajectory lifted(const Trajectory& path, const Pose2& T_site_path, const Trajec
   return result;
 }
 
-Trajectory path_of_run(const std::filesystem::path& log, const std::string& name) {
-  const RunRecord record = read_run_record(log);
+/// Returns the error of the mount of the lidar that the simulator drew for the robot of a run.
+Pose3 as_built_mount(const AsBuiltTruth& as_built) {
+  const auto value = [&as_built](const char* name) {
+    const auto found = std::ranges::find(as_built.values, name, [](const auto& entry) { return entry.first; });
+    return found == as_built.values.end() ? 0.0 : found->second;
+  };
+  // The angles are twice the vector part of the quaternion (sim/as_built/as_built_robot.cc).
+  const Eigen::Vector3d vector =
+      0.5 * Eigen::Vector3d(value("lidar.roll_rad"), value("lidar.pitch_rad"), value("lidar.yaw_rad"));
+  const double w = std::sqrt(std::max(0.0, 1.0 - vector.squaredNorm()));
+  return {{value("lidar.x_m"), value("lidar.y_m"), value("lidar.z_m")},
+          Eigen::Quaterniond(w, vector.x(), vector.y(), vector.z()).normalized()};
+}
+
+Trajectory path_of_run(const std::filesystem::path& log, const RunRecord& record, const std::string& name) {
   if (name == "truth") return record.T_world_body;
   if (record.T_map_body.size() < 2)
     throw InputError(fmt::format("{}: no poses on /pose: use --trajectory truth", log.string()));
@@ -93,8 +107,14 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
   const bool is_of_run = source.path_name == "truth" || source.path_name == "pose";
   if (is_of_run && !source.is_run)
     throw InputError(fmt::format("--trajectory = {}: only for a run directory: give a TUM file", source.path_name));
-  source.T_site_body = is_of_run ? path_of_run(source.log, source.path_name)
-                                 : io::load_tum(source.path_name, io::SameStamps::kKeepFirst);
+  if (is_of_run) {
+    const RunRecord record = read_run_record(source.log);
+    source.T_site_body = path_of_run(source.log, record, source.path_name);
+    // True poses of the body give those of the beams with the mount as built only.
+    if (source.path_name == "truth") source.T_body_lidar = *source.T_body_lidar * as_built_mount(record.as_built);
+  } else {
+    source.T_site_body = io::load_tum(source.path_name, io::SameStamps::kKeepFirst);
+  }
   const Pose3 T_site_path = to_pose3({settings.path.x_m, settings.path.y_m, to_rad(settings.path.yaw_deg)});
   for (StampedPose& entry : source.T_site_body) entry.pose = T_site_path * entry.pose;
   return source;

@@ -59,7 +59,8 @@ struct LogOnSite {
   std::string path_name, lidar_name;  ///< for display
   bool is_run = false;                ///< log of `patrol run`
   Trajectory T_site_body;
-  std::optional<Pose3> T_body_lidar;  ///< mount by the robot's description; none: planar, by the log
+  std::optional<Pose3> T_body_lidar;  ///< of a run: by the robot's description, and with its true path as built;
+                                      ///< none: planar, by the log
   realism::LidarDevice device;        ///< of the preset
 };
 

@@ -92,6 +92,27 @@ class Realism(unittest.TestCase):
         self.assertIn("Kolmogorov-Smirnov", again.stdout)
         self.assertLess(json.loads((self.folder / "again/metrics.json").read_text())["ks_distance"], 0.06)
 
+    def test_the_angle_noise_of_a_run_on_its_true_path_is_found_with_the_mount_as_built(self):
+        planted_deg = 0.1
+        rows = [bytearray(b"\xfe" * 200) for _ in range(160)]  # a room of 20 x 16 m with partitions and pillars
+        for x0, y0, x1, y1 in [(0, 0, 200, 2), (0, 158, 200, 160), (0, 0, 2, 160), (198, 0, 200, 160), (60, 0, 62, 60), (60, 100, 62, 160),
+                               (130, 30, 132, 120), (90, 20, 100, 26), (30, 120, 34, 124), (160, 100, 164, 104), (160, 30, 170, 36)]:
+            for y in range(y0, y1):
+                rows[y][x0:x1] = bytes(x1 - x0)
+        (self.folder / "hall.pgm").write_bytes(b"P5\n200 160\n255\n" + b"".join(reversed(rows)))
+        (self.folder / "hall.yaml").write_text("image: hall.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.25\n")
+        self.patrol("import", "site", self.folder / "hall.yaml", "--out", self.folder / "worlds/hall")
+        run, out = self.folder / "run", self.folder / "of_run"
+        (self.folder / "models").mkdir()
+        done = subprocess.run([PATROL, "run", "hall", "--robot", "wheeled", "--start", "3,8,0", "--goal", "10,5", "--goal", "10,12", "--seed", "3", "--out", run, "--set",
+                               f"sensors.lidar.angle_noise_std_deg={planted_deg}"], capture_output=True, text=True, timeout=200, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        done = subprocess.run([PATROL, "calibrate", "--sensor", "lidar", run, "--out", out, "--set", "input.max_scans=200"], capture_output=True, text=True, timeout=200, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        fitted = json.loads((out / "metrics.json").read_text())["parameters"]["angle_noise_std_deg"]
+        self.assertTrue(fitted["seen"])
+        self.assertAlmostEqual(fitted["value"], planted_deg, delta=0.2 * planted_deg)
+
     def test_a_path_that_is_not_that_of_the_log_is_refused_or_warned_of(self):
         rows = [line.split() for line in (self.folder / "path.tum").read_text().splitlines()]
         path = self.folder / "elsewhere.tum"
