@@ -193,12 +193,46 @@ std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise
   return surfaces;
 }
 
-/// Lowest walkable surface at a point that faces up; the lowest one if none does.
+/// Returns the lowest height of the given surfaces at a point.
+std::optional<double> given_height_m(const Mesh& given, const Eigen::Vector2d& p_m) {
+  std::optional<double> lowest_m;
+  for (const std::array<int, 3>& t : given.triangles) {
+    const Eigen::Vector3d &a = given.vertices_m[static_cast<std::size_t>(t[0])],
+                          &b = given.vertices_m[static_cast<std::size_t>(t[1])],
+                          &c = given.vertices_m[static_cast<std::size_t>(t[2])];
+    Eigen::Matrix2d sides;
+    sides << (b - a).head<2>(), (c - a).head<2>();
+    if (std::abs(sides.determinant()) < 1e-12) continue;
+    const Eigen::Vector2d uv = sides.inverse() * (p_m - a.head<2>());
+    if (uv.minCoeff() < 0.0 || uv.sum() > 1.0) continue;
+    const double z_m = a.z() + uv.x() * (b - a).z() + uv.y() * (c - a).z();
+    lowest_m = std::min(lowest_m.value_or(z_m), z_m);
+  }
+  return lowest_m;
+}
+
+/// Returns the label of the surface with the given sample whose height is nearest to `z_m`; -1 if there is none.
+int given_surface_near(SurfaceSamples& samples, double z_m) {
+  int nearest = -1;
+  double min_distance_m = std::numeric_limits<double>::infinity();
+  for (const SurfaceSample& sample : samples.all()) {
+    const double distance_m = std::abs(double{sample.z_m} - z_m);
+    if (!sample.is_given || sample.surface < 0 || distance_m >= min_distance_m) continue;
+    min_distance_m = distance_m;
+    nearest = sample.surface;
+  }
+  return nearest;
+}
+
+/// Lowest walkable surface at a point that faces up; the lowest one if none does. Beside the grid, the given surface at
+/// the height of the point; none (-1) if the mesh covers it within the grid.
 int surface_at(SurfaceSamples& samples, const std::vector<WalkableSurface>& surfaces, const GridGeometry& grid,
-               const Eigen::Vector2d& start) {
+               const Mesh& given, const Eigen::Vector2d& start) {
   int lowest = -1;
   const Cell at = grid.cell_at(start);
-  if (grid.contains(at)) {
+  if (!grid.contains(at)) {
+    if (const std::optional<double> z_m = given_height_m(given, start)) return given_surface_near(samples, *z_m);
+  } else {
     const std::size_t cell =
         static_cast<std::size_t>(at.row) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(at.col);
     for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
@@ -270,7 +304,8 @@ GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometr
   SurfaceSamples samples(mesh, given, grid);
   const bool is_mesh_oriented = is_oriented(mesh);
   const std::vector<WalkableSurface> surfaces = label_surfaces(samples, 1.001 * rise_m, is_mesh_oriented);
-  const int chosen = start ? surface_at(samples, surfaces, grid, *start) : surface_by_rule(surfaces, cell_m2);
+  int chosen = start ? surface_at(samples, surfaces, grid, given, *start) : -1;
+  if (chosen < 0) chosen = surface_by_rule(surfaces, cell_m2);
   GroundSurface ground;
   ground.height_m = Grid<float>(grid);
   if (chosen < 0) {
@@ -290,9 +325,9 @@ GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometr
     ground.area_m2 += cell_m2;
     if (!sample.is_given) ground.own_area_m2 += cell_m2;
   }
+  ground.is_ground = is_known;
   fill(samples, rise_m, is_known, ground.height_m);
   return ground;
 }
 
 }  // namespace patrol::importer
-  ground.is_ground = is_known;

@@ -26,8 +26,8 @@ struct GroundSurface {
   double at(const Eigen::Vector2d& p_m) const;
 };
 
-/// Finds the ground as described at `contact_geometry`. Throws InputError without file if there is no walkable surface
-/// at `start`.
+/// Finds the ground as described at `contact_geometry`. A `start` beside the grid is on a given surface. Throws
+/// InputError without file if there is no walkable surface at `start`.
 GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometry& grid,
                           const std::optional<Eigen::Vector2d>& start);
 

@@ -96,6 +96,8 @@ class SdfSiteBuilder {
     Eigen::AlignedBox3d box;
     const Mesh meshes = join(contact_meshes_);
     for (const Eigen::Vector3d& vertex : meshes.vertices_m) box.extend(vertex);
+    if (const std::optional<Pose2>& start = options.mission.start)
+      box.extend(Eigen::Vector3d(start->x, start->y, box.center().z()));
     std::vector<Mesh> given;
     for (const SiteShape& shape : site_.shapes) {
       if (shape.use == ShapeUse::kContactOnly) given.push_back(tessellated(shape, box));

@@ -233,6 +233,20 @@ TEST(ContactGeometry, AStartChoosesTheGround) {
   }
 }
 
+/// Crate on a given plane z = 0, and a given deck of 4 x 4 m at z = 1 m above the crate.
+TEST(ContactGeometry, AStartBesideTheMeshChoosesTheGivenSurfaceThere) {
+  Mesh crate, plane, deck;
+  add_box(crate, {0, 0, 0}, {1, 1, 0.5});
+  add_quad(plane, {-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0});
+  add_quad(deck, {-1, -1, 1}, {9, -1, 1}, {9, 3, 1}, {-1, 3, 1});
+  const ContactGeometry on_plane = contact_geometry(crate, plane, {.start = Eigen::Vector2d(-4.0, 2.0)});
+  EXPECT_EQ(on_plane.rows.front().text, "the surfaces with contact of their own");
+  EXPECT_EQ(count(on_plane, SiteShapeType::kMesh), 1) << "the crate is above the plane";
+  const ContactGeometry on_deck = contact_geometry(crate, deck, {.start = Eigen::Vector2d(8.0, 2.0)});
+  EXPECT_EQ(count(on_deck, SiteShapeType::kMesh), 0) << "the crate is below the deck";
+  EXPECT_THROW(contact_geometry(crate, deck, {.start = Eigen::Vector2d(8.0, 4.0)}), InputError);
+}
+
 TEST(ContactGeometry, AStartOnASlabOf20cmChoosesItsTopAndNotItsUnderside) {
   Mesh slab;
   add_box(slab, {0, 0, -0.2}, {8, 6, 0});

@@ -119,6 +119,17 @@ TEST(SdfSite, AMeshWithAnUppercaseGltfExtensionIsTurnedUpright) {
   EXPECT_THAT(extent.max(), VectorNear(Eigen::Vector3d(1, 2, 3), 1e-6));
 }
 
+// The mesh is 3 m long and the start 12 m from it, beyond the part of the plane that the search for the ground sees.
+TEST(SdfSite, AStartOnThePlaneFarFromAMeshIsAccepted) {
+  Mesh fence;
+  add_box(fence, {0, 0, 0}, {3, 0.1, 1});
+  SiteFileImport import("a.sdf", world("<include><uri>model://ground_plane</uri></include>" +
+                                       model("fence", collision("<mesh><uri>fence.obj</uri></mesh>"), "5 0 0 0 0 0")));
+  test::write_bytes(import.folder / "fence.obj", to_obj(fence));
+  import.options.mission.start = Pose2{-12.0, 0.0, 0.0};
+  EXPECT_EQ(shape_of(import.read(), "contact_hull_1").type, SiteShapeType::kMesh);
+}
+
 TEST(SdfSite, AnEmptyFileIsRefusedWithoutALine) {
   EXPECT_EQ(SiteFileImport("a.sdf", "").error(), "a.sdf: not XML: XML_ERROR_EMPTY_DOCUMENT");
   EXPECT_EQ(SiteFileImport("a.dae", "").error(), "a.dae: not XML: XML_ERROR_EMPTY_DOCUMENT");
