@@ -45,12 +45,13 @@ InputError station_error(const MissionOptions& options, const io::TourStation& r
                      fmt::format("{}: ({:g}, {:g}): {}", row.name, row.x, row.y, what));
 }
 
-/// Gives a site without a floor plan one: that of the ground at a place, or the largest one.
-void require_plan(const std::optional<Eigen::Vector2d>& near, const std::string& ground, ImportedSite& site) {
+/// Gives a site without a floor plan one: that of the ground at a point, or the largest one. It contains the stations.
+void require_plan(const std::optional<Eigen::Vector2d>& near, const std::vector<Eigen::Vector2d>& stations_m,
+                  const std::string& ground, ImportedSite& site) {
   if (site.map) return;
   const sim::ModelPtr model = compile_site(site);
   try {
-    site.map = plan_of(*model, near);
+    site.map = plan_of(*model, near, stations_m);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", site.source, error.what()));
   }
@@ -80,8 +81,10 @@ Pose2 start_at_first(const std::vector<io::TourStation>& rows) {
 void add_table_mission(const MissionOptions& options, ImportedSite& site) {
   const std::vector<io::TourStation> rows = io::load_tour_stations(options.stations);
   const Pose2 start = options.start ? *options.start : start_at_first(rows);
+  std::vector<Eigen::Vector2d> stations_m;
+  for (const io::TourStation& row : rows) stations_m.emplace_back(row.x, row.y);
   try {
-    require_plan(start.position(), options.start ? "start's" : "first station's", site);
+    require_plan(start.position(), stations_m, options.start ? "start's" : "first station's", site);
   } catch (const InputError& error) {
     if (options.start) throw;
     throw station_error(options, rows.front(), error.what());
@@ -115,7 +118,7 @@ FreeSpace free_space_of(const MissionOptions& options, const std::optional<Eigen
 
 void add_random_mission(const MissionOptions& options, ImportedSite& site) {
   const std::optional<Eigen::Vector2d> near = options.start ? std::optional(options.start->position()) : std::nullopt;
-  require_plan(near, near ? "start's" : "largest connected", site);
+  require_plan(near, {}, near ? "start's" : "largest connected", site);
   check_start(options, site);
   const FreeSpace space = free_space_of(options, near, site);
   if (options.start) {

@@ -38,8 +38,14 @@ Eigen::AlignedBox3d box_around(const mjModel& site) {
 /// Flood of the ground of a site.
 class GroundFlood {
  public:
-  GroundFlood(const mjModel& site, const SitePlanSettings& settings)
+  /// The grid contains `points_m`.
+  GroundFlood(const mjModel& site, const std::vector<Eigen::Vector2d>& points_m, const SitePlanSettings& settings)
       : scene_(site), settings_(settings), box_(box_around(site)) {
+    const Eigen::AlignedBox3d surfaces = box_;
+    for (const Eigen::Vector2d& p_m : points_m) {
+      const Eigen::Vector3d point(p_m.x(), p_m.y(), surfaces.min().z());
+      if (surfaces.exteriorDistance(point) <= settings.max_outside_m) box_.extend(point);
+    }
     const Eigen::Vector2d low = box_.min().head<2>().array() - settings.margin_m,
                           size = box_.max().head<2>().array() + settings.margin_m - low.array();
     double cell_m = settings.cell_m;
@@ -179,9 +185,11 @@ class GroundFlood {
 }  // namespace
 
 OccupancyGrid plan_of(const mjModel& site, const std::optional<Eigen::Vector2d>& p_start_m,
-                      const SitePlanSettings& settings) {
+                      const std::vector<Eigen::Vector2d>& stations_m, const SitePlanSettings& settings) {
   constexpr double kStartSpacing_m = 1.0;
-  GroundFlood flood(site, settings);
+  std::vector<Eigen::Vector2d> points_m = stations_m;
+  if (p_start_m) points_m.push_back(*p_start_m);
+  GroundFlood flood(site, points_m, settings);
   if (p_start_m) {
     if (flood.flood_from(flood.grid().cell_at(*p_start_m)) == 0)
       throw InputError(fmt::format("start ({:.2f}, {:.2f}): no ground", p_start_m->x(), p_start_m->y()));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 #include <mujoco/mujoco.h>
@@ -16,14 +17,16 @@ struct SitePlanSettings {
   double height_m = 1.5;         ///< height of the space that a robot needs above the ground
   double max_step_m = 0.1;       ///< maximum difference of the ground's heights of neighboring cells
   double min_obstacle_m = 0.05;  ///< minimum height of an obstacle above the ground
-  double margin_m = 2.0;         ///< width of the plan beyond the surfaces that have an end
+  double margin_m = 2.0;         ///< width of the plan beyond the surfaces that have an end, start and stations
+  double max_outside_m = 50.0;   ///< start and stations farther outside of the surfaces do not extend the plan
 };
 
 /// Returns the floor plan of a site by what its lidars see: cells of the connected ground are free, cells with a
 /// surface up to `height_m` above it are occupied, also of walls that are thinner than a cell; all others are unknown.
 /// The ground is the lowest surface that faces up with the height above it; it is flooded from the cell at `p_start_m`,
-/// or from the start that floods the largest region. Throws InputError if there is no ground.
+/// or from the start that floods the largest region. The plan contains the start and `stations_m`, points in site.
+/// Throws InputError if there is no ground.
 OccupancyGrid plan_of(const mjModel& site, const std::optional<Eigen::Vector2d>& p_start_m,
-                      const SitePlanSettings& settings = {});
+                      const std::vector<Eigen::Vector2d>& stations_m = {}, const SitePlanSettings& settings = {});
 
 }  // namespace patrol::importer

@@ -63,7 +63,7 @@ TEST(SitePlan, AWallOf2cmAndASheetWithGroundOnBothSidesAreOneOccupiedCellThickAn
 
 TEST(SitePlan, WithoutAStartTheLargestGroundIsTaken) {
   const sim::ModelPtr site = sim::compile(*sim::parse_spec(kRoom), "room");
-  const OccupancyGrid plan = plan_of(*site, std::nullopt, {.margin_m = 10.0});
+  const OccupancyGrid plan = plan_of(*site, std::nullopt, {}, {.margin_m = 10.0});
   EXPECT_EQ(value_at(plan, 8.0, 0.0), 0);
   EXPECT_NE(value_at(plan, 0.0, 0.0), 0);
 }
@@ -77,6 +77,18 @@ TEST(SitePlan, AStartWithoutGroundAndASiteWithoutGroundAreRefused) {
   EXPECT_THROW(plan_of(*site, Eigen::Vector2d(50.0, 0.0)), InputError);
   const sim::ModelPtr nothing = sim::compile(*sim::parse_spec("<mujoco/>"), "nothing");
   EXPECT_THROW(plan_of(*nothing, std::nullopt), InputError);
+}
+
+TEST(SitePlan, OnAnEndlessPlaneThePlanContainsStartAndStationsWithAMarginAndNotThoseFarOutside) {
+  const sim::ModelPtr site = sim::compile(
+      *sim::parse_spec("<mujoco><worldbody><geom type=\"plane\" size=\"0 0 1\"/><geom type=\"box\" size=\"1 1 0.5\" "
+                       "pos=\"6 0 0.5\"/></worldbody></mujoco>"),
+      "plane");
+  const OccupancyGrid plan = plan_of(*site, Eigen::Vector2d(0.0, 0.0), {{-4.0, 0.0}, {6.0, 9.0}, {6.0, 400.0}});
+  for (const Eigen::Vector2d& p : {Eigen::Vector2d(-5.9, 0.0), Eigen::Vector2d(6.0, 10.9), Eigen::Vector2d(0.0, 0.0)})
+    EXPECT_EQ(value_at(plan, p.x(), p.y()), 0) << p.transpose();
+  EXPECT_FALSE(plan.geometry().contains(plan.geometry().cell_at({6.0, 12.0})));
+  EXPECT_EQ(plan.geometry().resolution_m, 0.05);
 }
 
 TEST(SitePlan, ALargeSiteHasLargerCells) {
