@@ -1,9 +1,11 @@
 #include "sim/model_assembly.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -145,6 +147,28 @@ void complete_inertial_frames(mjSpec& spec) {
   }
 }
 
+/// Increases the two smaller moments of inertia of a body whose sum is that of the largest one. The file has six
+/// digits, and the rounded moments would violate A + B >= C.
+void keep_inertias_valid(mjSpec& spec, const mjModel& model) {
+  constexpr double kMargin = 2e-5;  // three moments with errors of 5e-6
+  for (int body = 1; body < model.nbody; ++body) {
+    std::array<double, 3> moments{};
+    std::copy_n(model.body_inertia + 3 * body, 3, moments.begin());
+    std::array<std::size_t, 3> order = {0, 1, 2};
+    std::ranges::sort(order, {}, [&moments](std::size_t i) { return moments[i]; });
+    const double missing = moments[order[2]] * (1.0 + kMargin) - moments[order[0]] - moments[order[1]];
+    mjsBody* source = mjs_findBody(&spec, std::string(name_of(model, mjOBJ_BODY, body)).c_str());
+    if (source == nullptr || missing <= 0.0) continue;
+    for (const std::size_t i : {order[0], order[1]}) moments[i] += 0.5 * missing;
+    source->explicitinertial = true;
+    source->fullinertia[0] = std::numeric_limits<double>::quiet_NaN();
+    std::copy(moments.begin(), moments.end(), source->inertia);
+    std::copy_n(model.body_ipos + 3 * body, 3, source->ipos);
+    std::copy_n(model.body_iquat + 4 * body, 4, source->iquat);
+    source->mass = model.body_mass[body];
+  }
+}
+
 }  // namespace
 
 double ground_height_m(const mjModel& model, const mjData& data, const Stance& stance, const Pose2& T_world_body,
@@ -181,6 +205,7 @@ std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot) 
   add_robot(*spec, robot_urdf, robot, to_pose3(Pose2{}, height_m));
   complete_inertial_frames(*spec);
   const ModelPtr model = compile(*spec, robot_urdf.path);
+  keep_inertias_valid(*spec, *model);
   std::vector<double> qpos(model->qpos0, model->qpos0 + model->nq);
   set_standing_posture(*model, robot, qpos.data());
   if (!robot.legs.empty())  // legs that are straight at zero reach below the ground

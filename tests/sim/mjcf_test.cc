@@ -14,6 +14,7 @@
 #include "io/urdf.h"
 #include "sim/model_assembly.h"
 #include "tests/support/temporary_file.h"
+#include "tests/support/wheeled_urdf.h"
 
 namespace patrol::sim::mjcf_test {
 namespace {
@@ -51,6 +52,26 @@ TEST(Mjcf, StockMujocoReadsTheFileOfEachRobotWithTheSameCoordinatesBodiesAndMass
       EXPECT_NEAR(read->key_qpos[i], built.start_qpos[static_cast<std::size_t>(i)], 1e-5);
     EXPECT_NEAR(mj_getTotalmass(read.get()), io::load_robot_description(urdf_of(name)).mass_kg, 1e-6);
   }
+}
+
+// The moments of the chassis have A + B = C. With six digits, 0.123456 + 0.234567 < 0.358024.
+TEST(Mjcf, StockMujocoReadsARobotWhoseInertiasAreThoseOfAFlatPlate) {
+  std::string urdf = test::skid_steer_urdf(0.5, 0.6).text();
+  const std::size_t at = urdf.find("<inertia "), end = urdf.find("/>", at);
+  ASSERT_NE(at, std::string::npos);
+  urdf.replace(at, end - at, R"(<inertia ixx="0.1234564" ixy="0" ixz="0" iyy="0.2345674" iyz="0" izz="0.3580238")");
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "plate.urdf", urdf);
+  const std::string file = (folder / "plate.urdf").string();
+  test::write_bytes(folder / "plate.xml", mjcf_of(file, io::load_robot_description(file)));
+  char error[1000] = "";
+  const ModelPtr read(mj_loadXML((folder / "plate.xml").c_str(), nullptr, error, sizeof(error)));
+  ASSERT_TRUE(read) << error;
+  const int base = mj_name2id(read.get(), mjOBJ_BODY, "base_link");
+  std::vector<double> moments(read->body_inertia + 3 * base, read->body_inertia + 3 * base + 3);
+  std::sort(moments.begin(), moments.end());
+  EXPECT_NEAR(moments[0], 0.1234564, 1e-5);
+  EXPECT_NEAR(moments[2], 0.3580238, 1e-6);
 }
 
 /// Points on the edges of a geom, seen from above, in the frame of the base.
