@@ -20,6 +20,7 @@
 #include "core/error.h"
 #include "importer/mesh_file_system.h"
 #include "importer/mesh_text.h"
+#include "importer/site/gltf_header.h"
 
 namespace patrol::importer {
 namespace {
@@ -100,6 +101,7 @@ int root_of(std::vector<int>& parents, int i) {
 std::vector<MeshPart> load_mesh(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": mesh file not found");
   check_mesh_text(file);
+  if (is_gltf(file)) read_gltf_header(file);
   Assimp::Importer importer;
   importer.SetIOHandler(new MeshFileSystem);  // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);

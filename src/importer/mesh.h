@@ -27,10 +27,10 @@ struct MeshPart {
   bool has_color = false;  ///< false: the file has no material, and `rgba` is a default
 };
 
-/// Reads an STL, OBJ or DAE file by libassimp: triangles in meters, with the transforms of the file's nodes. The unit
-/// of a DAE file is applied. Its up axis is not, as in RViz: coordinates are those of the link. One part for each
-/// color. Throws InputError with the file if it cannot be read or has no triangles, and for what check_mesh_text
-/// refuses.
+/// Reads an STL, OBJ, DAE, glTF or GLB file by libassimp: triangles in meters, with the transforms of the file's nodes.
+/// The unit of a DAE file is applied. The up axis of DAE and glTF files is not, as in RViz: coordinates are those of
+/// the link. One part for each color. Throws InputError with the file if it cannot be read or has no triangles, and for
+/// what check_mesh_text refuses.
 std::vector<MeshPart> load_mesh(const std::filesystem::path& file);
 
 /// Returns all parts as one mesh, without normals.

@@ -168,8 +168,9 @@ void SourceReader::read_mesh(const XMLElement& element, const std::string& link,
     if (path.lexically_normal() != named_path(packages_, uri))
       elsewhere_[packages_.relative(path.parent_path())].insert(path.filename().string());
     const std::string extension = to_lower(path.extension().string());
-    if (extension != ".stl" && extension != ".obj" && extension != ".dae")
-      throw InputError(fmt::format("{}: mesh must be an STL, OBJ or DAE file", path.string()));
+    constexpr std::array kExtensions = {".stl", ".obj", ".dae", ".gltf", ".glb"};
+    if (std::ranges::find(kExtensions, extension) == kExtensions.end())
+      throw InputError(fmt::format("{}: mesh must be an STL, OBJ, DAE, glTF or GLB file", path.string()));
     const std::string key =
         fmt::format("{} {}", path.string(), has_scale ? fmt::format("{} {} {}", scale.x(), scale.y(), scale.z()) : "-");
     auto& loaded = meshes_[key];

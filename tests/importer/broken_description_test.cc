@@ -196,7 +196,8 @@ TEST(BrokenDescription, Meshes) {
   };
   EXPECT_THAT(complaint(mesh("nowhere.stl")),
               MatchesRegex("v.urdf:[0-9]+: x: .*nowhere.stl: mesh file not found: .*--package.*"));
-  EXPECT_THAT(complaint(mesh("v.urdf")), MatchesRegex("v.urdf:[0-9]+: x: .*must be an STL, OBJ or DAE file"));
+  EXPECT_THAT(complaint(mesh("v.urdf")),
+              MatchesRegex("v.urdf:[0-9]+: x: .*must be an STL, OBJ, DAE, glTF or GLB file"));
   EXPECT_THAT(complaint(mesh("package://who/a.stl")), MatchesRegex("v.urdf:[0-9]+: x: unknown package \"who\".*"));
   EXPECT_THAT(complaint(with(link("x", shape("visual", "<cone/>")) + joint("j", "fixed", "base_link", "x", "0 0 0"))),
               MatchesRegex("v.urdf:[0-9]+: x: <cone>: unknown shape.*"));

@@ -10,6 +10,7 @@
 
 #include "tests/importer/description.h"
 #include "tests/importer/import.h"
+#include "tests/importer/site/mesh_files.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::importer::mesh_import_test {
@@ -35,6 +36,35 @@ TEST(ImportRobot, WheelsOfScaledMeshesAreMeasured) {
   expect_wheel(import, "l", {0.0, 0.25, -0.05}, 0.1, 0.04, 1e-5);
   ASSERT_EQ(import.robot.meshes.size(), 1U) << "one file for both wheels";
   EXPECT_TRUE(std::filesystem::exists(import.folder / "imported/meshes" / import.robot.meshes[0].first));
+}
+
+/// Wheel of glTF about z, which its node turns about x.
+std::string gltf_wheel(double radius_m, double width_m, const std::string& more) {
+  Mesh mesh;
+  for (const Triangle& triangle : wheel_triangles(radius_m, width_m)) {
+    const int first = static_cast<int>(mesh.vertices_m.size());
+    for (const Eigen::Vector3d& v : triangle) mesh.vertices_m.emplace_back(v.x(), -v.z(), v.y());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  GltfText text;
+  text.node = R"("mesh":0,"rotation":[0.7071067811865476,0,0,0.7071067811865476],"translation":[0,-0.01,0])";
+  text.material = R"({"name":"rubber","pbrMetallicRoughness":{"baseColorFactor":[0.2,0.4,0.6,1]}})";
+  text.more = more;
+  return text.of(mesh);
+}
+
+// As in RViz, the up axis y of the format is not applied: coordinates are those of the link.
+TEST(ImportRobot, MeshesOfGltfHaveTheTransformsOfTheirNodesAndTheirColor) {
+  const std::string mesh = R"(<mesh filename="wheel.gltf"/>)";
+  Import import(
+      robot(chassis() + mesh_wheel("l", "0 0.25 -0.05", mesh) + mesh_wheel("r", "0 -0.25 -0.05", mesh) + caster()));
+  write_bytes(import.folder / "wheel.gltf", gltf_wheel(0.1, 0.04, ""));
+  import.load();
+  expect_wheel(import, "l", {0.0, 0.24, -0.05}, 0.1, 0.04, 1e-5);
+  EXPECT_THAT(test::read_bytes(import.folder / "imported/imported.urdf"), HasSubstr("rgba=\"0.2 0.4 0.6 1\""));
+  write_bytes(import.folder / "wheel.gltf",
+              gltf_wheel(0.1, 0.04, R"(,"extensionsRequired":["KHR_draco_mesh_compression"])"));
+  EXPECT_THAT(complaint(import), HasSubstr("KHR_draco_mesh_compression: this extension is not supported"));
 }
 
 TEST(ImportRobot, TheHubOfAWheelMeshDoesNotChangeItsWidthAndCenter) {
