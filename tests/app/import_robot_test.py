@@ -97,6 +97,16 @@ class ImportRobot(unittest.TestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("robot: four has no lidar (2D lidar), which stack.slam requires, and no tdlas", refused.stderr)
 
+    def test_the_known_robots_of_a_message_are_those_of_the_working_directory_and_of_the_program(self):
+        self.assertEqual(self.patrol("import", "robot", self.urdf, "--out", "models/four").returncode, 0)
+        (self.folder / "worlds").mkdir()
+        refused = self.patrol("check", "fuor")
+        self.assertEqual(refused.returncode, 2)
+        known = refused.stderr.split("known: ")[1].rstrip(")\n").split(", ")
+        self.assertEqual(known, sorted(known))
+        self.assertLessEqual({"four", "cart", "quadruped", "tracked", "wheeled"}, set(known))
+        self.assertNotIn("lidars", known)
+
     def test_a_broken_file_is_one_line_with_file_line_and_element(self):
         self.urdf.write_text(vendor_urdf().replace('<parent link="chassis"/><child link="roue1"/>', '<parent link="nowhere"/><child link="roue1"/>'))
         line = 1 + self.urdf.read_text().split("nowhere")[0].count("\n")

@@ -1,14 +1,15 @@
 #include "app/scenario/data_folders.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <set>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/text.h"
-#include "importer/output_folder.h"
 
 namespace patrol::app {
 namespace {
@@ -32,15 +33,23 @@ std::filesystem::path data_root_of_program() {
   return {};
 }
 
-/// Names of the folders in `parent`, sorted, for "known: ..." in messages.
-std::string folders_in(const std::filesystem::path& parent) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(parent)) {
-    if (entry.is_directory() && entry.path().extension() != importer::kStagingExtension)
-      names.push_back(entry.path().filename().string());
+/// Folders in which robots and worlds are searched, in order; some may be equal or empty.
+std::array<std::filesystem::path, 3> searched_roots(const std::filesystem::path& root) {
+  return {root, std::filesystem::current_path(), data_root_of_program()};
+}
+
+/// Names of the robots or worlds in all searched folders, sorted, for "known: ..." in messages.
+std::string known_names(const std::filesystem::path& root, const std::string& kind, const std::string& extension) {
+  std::set<std::string> names;
+  for (const std::filesystem::path& data : searched_roots(root)) {
+    std::error_code none;
+    if (data.empty()) continue;
+    for (const auto& entry : std::filesystem::directory_iterator(data / kind, none)) {
+      const std::string name = entry.path().filename().string();
+      if (std::filesystem::exists(entry.path() / (name + extension), none)) names.insert(name);
+    }
   }
-  std::sort(names.begin(), names.end());
-  return join(names, ", ");
+  return join(std::vector<std::string>(names.begin(), names.end()), ", ");
 }
 
 /// Path <root>/<kind>/<name>/<name><extension>. Throws InputError if it does not exist.
@@ -49,7 +58,7 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
   std::filesystem::path file = root / kind / name / (name + extension);
   if (!std::filesystem::exists(file)) {
     throw InputError(
-        fmt::format("{} = {}: {} not found (known: {})", key, name, file.string(), folders_in(root / kind)));
+        fmt::format("{} = {}: {} not found (known: {})", key, name, file.string(), known_names(root, kind, extension)));
   }
   return file;
 }
@@ -58,7 +67,7 @@ std::filesystem::path find_definition(const std::filesystem::path& root, const s
 /// data of the program; below the data root if none has.
 std::filesystem::path folder_of(const std::filesystem::path& root, const std::string& kind, const std::string& name,
                                 const std::string& extension) {
-  for (const std::filesystem::path& data : {root, std::filesystem::current_path(), data_root_of_program()}) {
+  for (const std::filesystem::path& data : searched_roots(root)) {
     if (!data.empty() && std::filesystem::exists(data / kind / name / (name + extension))) return data / kind / name;
   }
   return root / kind / name;
