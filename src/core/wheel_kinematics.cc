@@ -9,11 +9,13 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/skid_spread.h"
 
 namespace patrol {
 namespace {
 
 constexpr double kStanding_mps = 1e-3;  // slower wheels have no direction
+constexpr double kPoint_m = 1e-6;       // shorter sides touch the ground in a point
 
 bool is_any_driven(const RobotDescription& robot) {
   return std::any_of(robot.wheels.begin(), robot.wheels.end(),
@@ -202,22 +204,16 @@ DifferentialGeometry differential_geometry(const RobotDescription& robot) {
           .middle_x_m = has_rollers(robot) ? 0.0 : x / count};
 }
 
+namespace {
+
 // With the sides at -+u and the robot at yaw rate w about x = c, contact i of the right side slides over the ground at
 // (w B/2 - u, w (x_i - c)). With k = (u - w B/2) / w and the loads N_i, friction along the opposite direction gives
 // neither a lateral force nor a moment if
 //   sum_i N_i (x_i - c) / sqrt(k^2 + (x_i - c)^2) = 0  and
 //   sum_i N_i (B/2 k - x_i (x_i - c)) / sqrt(k^2 + (x_i - c)^2) = 0.
-SkidTurn skid_turn(const RobotDescription& robot) {
-  const DifferentialGeometry geometry = differential_geometry(robot);
+SkidTurn turn_on(const std::vector<Contact>& contacts, bool is_symmetric, const DifferentialGeometry& geometry) {
   SkidTurn turn{.turn_center_x_m = geometry.middle_x_m};
-  if (has_rollers(robot)) {
-    turn.gauge_ratio = mecanum_gauge_ratio(robot);
-    return turn;
-  }
-  if (geometry.contact_length_m < 1e-6) return turn;
   const double half_gauge_m = 0.5 * geometry.gauge_m, half_length_m = 0.5 * geometry.contact_length_m;
-  const std::vector<Contact> contacts = contacts_of(robot, geometry);
-  const bool is_symmetric = robot.tracks || !robot.center_of_mass_x_m;
   const auto center_at = [&](double k) {
     if (is_symmetric) return 0.0;
     return root_between(-half_length_m, half_length_m, [&](double center) {
@@ -241,6 +237,46 @@ SkidTurn skid_turn(const RobotDescription& robot) {
   turn.gauge_ratio = (half_gauge_m + k) / half_gauge_m;
   turn.turn_center_x_m += center_at(k);
   return turn;
+}
+
+}  // namespace
+
+SkidTurn skid_turn(const RobotDescription& robot) {
+  const DifferentialGeometry geometry = differential_geometry(robot);
+  if (has_rollers(robot)) return {.gauge_ratio = mecanum_gauge_ratio(robot), .turn_center_x_m = geometry.middle_x_m};
+  if (geometry.contact_length_m < kPoint_m) return {.turn_center_x_m = geometry.middle_x_m};
+  return turn_on(contacts_of(robot, geometry), robot.tracks || !robot.center_of_mass_x_m, geometry);
+}
+
+// Equal springs under a rigid chassis: with the relative radii 1 + e_i and the deflection d of the mean load, relative
+// to the radius, the load of wheel i changes by (e_i - p_i) / d, where p is the plane of least squares through e over
+// the positions of the wheels.
+double skid_ratio_std(const RobotDescription& robot, double radius_std, double tire_deflection_ratio) {
+  const std::vector<WheelGeometry> wheels = robot.tracks ? std::vector<WheelGeometry>{} : fixed_wheels(robot);
+  const DifferentialGeometry geometry = differential_geometry(robot);
+  const bool is_rigid = wheels.size() > 4 && !has_rollers(robot) && geometry.contact_length_m >= kPoint_m;
+  if (!is_rigid || tire_deflection_ratio <= 0.0) return 0.0;
+  Eigen::MatrixX3d positions(wheels.size(), 3);
+  for (std::size_t i = 0; i < wheels.size(); ++i)
+    positions.row(static_cast<Eigen::Index>(i)) << 1.0, wheels[i].center_in_body.x(), wheels[i].center_in_body.y();
+  const auto fit = positions.completeOrthogonalDecomposition();
+  const std::vector<Contact> nominal = contacts_of(robot, geometry);
+  constexpr double kLoadStep = 1e-3;
+  const auto ratio_with = [&](std::size_t wheel, double step) {
+    Eigen::VectorXd error = Eigen::VectorXd::Zero(positions.rows());
+    error[static_cast<Eigen::Index>(wheel)] = step;
+    error -= positions * fit.solve(error).eval();
+    std::vector<Contact> contacts = nominal;
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      contacts[i].load = std::max(0.0, contacts[i].load + error[static_cast<Eigen::Index>(i)]);
+    return turn_on(contacts, false, geometry).gauge_ratio;
+  };
+  double variance = 0.0;
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    const double slope = (ratio_with(i, kLoadStep) - ratio_with(i, -kLoadStep)) / (2.0 * kLoadStep);
+    variance += std::pow(slope * radius_std / tire_deflection_ratio, 2);
+  }
+  return std::sqrt(variance);
 }
 
 WheelCommand wheel_command(const RobotDescription& robot, double forward_mps, double yaw_rate_radps,

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "core/random.h"
+#include "core/skid_spread.h"
 
 namespace patrol {
 namespace {
@@ -69,6 +70,40 @@ TEST(SkidRatio, OfSixWheelsIsBetweenThatOfTwoAndThatOfFour) {
   six.wheels.push_back(driven(0.0, -0.3, 1));
   EXPECT_GT(skid_ratio(six), 1.1);
   EXPECT_LT(skid_ratio(six), skid_ratio(four_wheels(0.8, 0.6)) - 0.1);
+}
+
+RobotDescription six_wheels(double wheelbase_m, double gauge_m) {
+  RobotDescription six = four_wheels(wheelbase_m, gauge_m);
+  six.wheels.push_back(driven(0.0, 0.5 * gauge_m, 0));
+  six.wheels.push_back(driven(0.0, -0.5 * gauge_m, 1));
+  return six;
+}
+
+/// Gauge ratio of six wheels with the loads of the outer axles and of the middle one: the moment of Coulomb friction
+/// 2 No (B k / 2 - a^2) / sqrt(k^2 + a^2) + Nm B / 2 is zero, where a is half of the wheelbase.
+double ratio_by_loads(double wheelbase_m, double gauge_m, double outer, double middle) {
+  const double a = 0.5 * wheelbase_m;
+  double low = 0.0, high = 2.0 * a * a / gauge_m;
+  for (int i = 0; i < 60; ++i) {
+    const double k = 0.5 * (low + high);
+    const double moment = 2.0 * outer * (0.5 * gauge_m * k - a * a) / std::hypot(k, a) + 0.5 * middle * gauge_m;
+    (moment > 0.0 ? high : low) = k;
+  }
+  return 1.0 + 2.0 * low / gauge_m;
+}
+
+// With the relative radii 1 + e and the deflection d, the mean load of the outer axles is 1 + 2 t and that of the
+// middle one 1 - 4 t, where t = (mean of e over the outer wheels - mean over the middle ones) / (6 d), with the
+// standard deviation sqrt(1/4 + 1/2) s / (6 d).
+TEST(SkidRatio, VariesWithTheRadiiOfSixWheelsByTheLoadOfTheMiddleAxleAndNotWithThoseOfFour) {
+  const RobotDescription six = six_wheels(1.2, 1.1);
+  const double slope = (ratio_by_loads(1.2, 1.1, 1.002, 0.996) - ratio_by_loads(1.2, 1.1, 0.998, 1.004)) / 0.002;
+  const double spread = skid_ratio_std(six, 0.001, 0.02);
+  EXPECT_NEAR(spread, slope * std::sqrt(0.75) * 0.001 / (6.0 * 0.02), 1e-4);
+  EXPECT_NEAR(spread, 0.0216, 0.001);
+  EXPECT_NEAR(skid_ratio_std(six, 0.002, 0.02), 2.0 * spread, 1e-9);
+  EXPECT_NEAR(skid_ratio_std(six, 0.002, 0.04), spread, 1e-9);
+  EXPECT_EQ(skid_ratio_std(four_wheels(1.2, 1.1), 0.01, 0.02), 0.0);
 }
 
 TEST(SkidRatio, OfTwoWheelsIsOneWhereverTheAxleAndTheCasterAre) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "app/scenario/sensor_needs.h"
 #include "core/error.h"
 #include "core/sensors/registry.h"
+#include "core/skid_spread.h"
 #include "core/wheel_kinematics.h"
 #include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
@@ -172,9 +174,9 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   robot.simulator.track_drive = scenario.track_drive;
   robot.simulator.wheel_drive = scenario.wheel_drive;
   robot.lidars = lidars_of(robot.simulator.sensors, robot.description);
+  robot.scan_leveling = scenario.stack.scan_leveling;
   disable_other_sensors(robot.simulator.sensors);
   robot.kind = kind_of(robot.description);
-  robot.scan_leveling = scenario.stack.scan_leveling;
   robot.effective_gauge_ratio = effective_gauge_ratio_of(robot);
   robot.limits = limits_of(robot);
   const bool has_legs = robot.kind == DriveKind::kLegs;
@@ -184,6 +186,11 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
     const double gauge_m = differential_geometry(robot.description).gauge_m * turn.gauge_ratio;
     robot.max_heading_drift_rad_per_m =
         std::max(robot.max_heading_drift_rad_per_m, 2.0 * scenario.as_built.wheels.radius_scale / gauge_m);
+    // The radii are uniform within the tolerance.
+    const double radius_std = scenario.as_built.wheels.radius_scale / std::numbers::sqrt3;
+    robot.yaw_tolerance += 3.0 *
+                           skid_ratio_std(robot.description, radius_std, scenario.wheel_drive.tire_deflection_ratio) /
+                           turn.gauge_ratio;
   }
   if (has_legs) {
     if (scenario.as_built.enabled) robot.max_gyro_bias_radps = 3.0 * scenario.as_built.imu.gyro_bias_std_radps;

@@ -26,7 +26,7 @@ constexpr const char* kSpeedMargin = "a tenth of the speed remains for the contr
 constexpr const char* kTiltOfTrot = "twice the swing of the trunk when a trot begins and ends";
 constexpr double kMaxPlaneTilt_deg = 5.0, kMaxTrotTilt_deg = 15.0, kMaxFallTilt_deg = 30.0;
 constexpr double kYawTolerance = 0.15;  // of the yaw rate
-constexpr double kMaxDrift_rad = 0.5;   // by the gyro bias; limits that allow more would reject nothing
+constexpr double kMaxDrift_rad = 0.5;   // by gyro bias or radii; limits that allow more would reject nothing
 constexpr double kMaxTorqueRatio = 0.9, kMaxMeanTorqueRatio = 0.5, kMaxSpeedRatio = 0.9, kMaxSwingSpeedRatio = 1.2;
 
 Figure tilt_figure(const DriveRecord& record, double max_deg, const char* reason) {
@@ -76,10 +76,16 @@ double gyro_drift_rad(const CheckRobot& robot, const DriveRecord& record) {
   return robot.max_gyro_bias_radps * record.samples.back().time_s;
 }
 
-/// Adds the gyro's bias to the reason of a limit that includes it.
-std::string with_gyro(const CheckRobot& robot, std::string reason) {
-  return robot.max_gyro_bias_radps > 0.0 ? std::move(reason) + ", and three standard deviations of the gyro's bias"
-                                         : std::move(reason);
+/// Part of the yaw tolerance that the as-built radii of more than four wheels add.
+double radius_tolerance(const CheckRobot& robot) { return std::max(0.0, robot.yaw_tolerance - kYawTolerance); }
+
+/// Adds the gyro's bias and the as-built radii to the reason of a limit that includes them.
+std::string with_tolerances(const CheckRobot& robot, std::string reason) {
+  if (robot.max_gyro_bias_radps > 0.0) reason += ", and three standard deviations of the gyro's bias";
+  if (radius_tolerance(robot) > 0.0)
+    reason += fmt::format(", and {:.0f} % by the loads of more than four wheels with as-built radii",
+                          100.0 * radius_tolerance(robot));
+  return reason;
 }
 
 Figure symmetric(std::string name, double value, double max, std::string reason, bool is_key = false) {
@@ -94,12 +100,12 @@ Figure symmetric(std::string name, double value, double max, std::string reason,
 /// True over commanded yaw.
 Figure yaw_ratio_figure(const CheckRobot& robot, const DriveRecord& record) {
   const double tolerance =
-      kYawTolerance + gyro_drift_rad(robot, record) / std::abs(record.samples.back().commanded_yaw_rad);
+      robot.yaw_tolerance + gyro_drift_rad(robot, record) / std::abs(record.samples.back().commanded_yaw_rad);
   return {.name = "yaw_rate_ratio",
           .value = yaw_ratio(record),
           .min = 1.0 - tolerance,
           .max = 1.0 + tolerance,
-          .limit_reason = with_gyro(robot, "navigation plans with the commanded yaw rate, ±15 %"),
+          .limit_reason = with_tolerances(robot, "navigation plans with the commanded yaw rate, ±15 %"),
           .is_key = true};
 }
 
@@ -146,11 +152,11 @@ std::vector<Figure> measure_straight(const CheckRobot& robot, const Maneuver&, c
                 "navigation corrects a speed error of a tenth within its acceleration", true),
       symmetric("lateral_drift_m", end.T_start_center.y,
                 (std::max(0.1, 0.5 * heading_drift_rad) + 0.5 * drift_rad) * commanded_m,
-                with_gyro(robot, "a tenth of the distance, or half of it times the limit of the heading")),
-      symmetric(
-          "heading_drift_deg", to_deg(end.yaw_rad), to_deg(heading_drift_rad + drift_rad),
-          with_gyro(robot, "1 degree per meter, or as-built radii of both sides at opposite ends of their tolerance"),
-          true)};
+                with_tolerances(robot, "a tenth of the distance, or half of it times the limit of the heading")),
+      symmetric("heading_drift_deg", to_deg(end.yaw_rad), to_deg(heading_drift_rad + drift_rad),
+                with_tolerances(
+                    robot, "1 degree per meter, or as-built radii of both sides at opposite ends of their tolerance"),
+                true)};
   add_slip_figure(robot, record, 0.05, "rolling wheels and tracks slip by less than 1 %, and their radii vary by 1 %",
                   figures);
   add_motor_figures(record, figures);
@@ -183,23 +189,25 @@ std::vector<Figure> measure_loop(const CheckRobot& robot, const Maneuver& maneuv
   const DriveSample& end = record.samples.back();
   double length_m = 0.0;
   for (const DriveSegment& segment : maneuver.segments) length_m += segment.vx_mps * segment.duration_s;
-  const double drift_rad = gyro_drift_rad(robot, record);
+  const double drift_rad = gyro_drift_rad(robot, record) + radius_tolerance(robot) * std::abs(end.commanded_yaw_rad);
   const Pose2 error = end.T_start_commanded.inverse() * end.T_start_center;
   std::vector<Figure> figures = {
       {.name = "closing_error_m",
        .value = error.position().norm(),
        .max = (0.2 + 0.25 * drift_rad) * length_m,
-       .limit_reason = with_gyro(robot, "a fifth of the path: yaw errors of 15 % at the corners of a square"),
+       .limit_reason = with_tolerances(robot, "a fifth of the path: yaw errors of 15 % at the corners of a square"),
        .is_key = true},
       symmetric("closing_yaw_deg", to_deg(end.yaw_rad - end.commanded_yaw_rad),
                 to_deg(kYawTolerance * std::abs(end.commanded_yaw_rad) + drift_rad),
-                with_gyro(robot, "15 % of 360 degrees"), true),
+                with_tolerances(robot, "15 % of 360 degrees"), true),
       yaw_ratio_figure(robot, record)};
   if (drift_rad > kMaxDrift_rad) {
     for (Figure& figure : std::span(figures).first(2)) {
       figure.min = figure.max = std::nullopt;
       figure.limit_reason =
-          fmt::format("no limit: the gyro bias may turn the robot by {:.0f} degrees", to_deg(drift_rad));
+          fmt::format("no limit: {} may turn the robot by {:.0f} degrees",
+                      robot.max_gyro_bias_radps > 0.0 ? "the gyro bias" : "as-built radii of more than four wheels",
+                      to_deg(drift_rad));
     }
   }
   if (!robot.turns_in_place()) {
@@ -225,9 +233,9 @@ std::vector<Figure> measure_turn(const CheckRobot& robot, const Maneuver&, const
   if (robot.kind != DriveKind::kLegs) {
     figures.push_back({.name = "effective_gauge_ratio",
                        .value = effective_gauge_ratio(record, differential_geometry(robot.description).gauge_m),
-                       .min = 0.85 * robot.effective_gauge_ratio,
-                       .max = 1.15 * robot.effective_gauge_ratio,
-                       .limit_reason = "gauge ratio in the kinematics of the firmware, ±15 %"});
+                       .min = (1.0 - robot.yaw_tolerance) * robot.effective_gauge_ratio,
+                       .max = (1.0 + robot.yaw_tolerance) * robot.effective_gauge_ratio,
+                       .limit_reason = with_tolerances(robot, "gauge ratio in the kinematics of the firmware, ±15 %")});
   }
   add_motor_figures(record, figures);
   figures.push_back(plane_tilt_figure(robot, record));

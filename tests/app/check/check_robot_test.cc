@@ -1,5 +1,6 @@
 #include "app/check/check_robot.h"
 
+#include <cmath>
 #include <filesystem>
 #include <regex>
 
@@ -10,6 +11,7 @@
 #include "core/wheel_kinematics.h"
 #include "io/files/atomic_file.h"
 #include "tests/support/temporary_file.h"
+#include "tests/support/wheeled_urdf.h"
 
 namespace patrol::app::check_robot_test {
 namespace {
@@ -58,6 +60,26 @@ TEST(CheckRobot, TheLimitOfTheHeadingDriftIs1DegreePerMeterOrThatOfOppositeRadii
   EXPECT_NEAR(to_deg(load("wheeled", {"as_built.wheels.radius_scale=0.03"}).max_heading_drift_rad_per_m), 3.34, 0.02);
   EXPECT_NEAR(to_deg(load("wheeled", {"as_built.wheels.radius_scale=0.002"}).max_heading_drift_rad_per_m), 1.0, 1e-9);
   EXPECT_NEAR(to_deg(load("tracked").max_heading_drift_rad_per_m), 1.0, 1e-9);
+}
+
+/// Wheeled robot with a middle axle, in a folder of its own.
+CheckRobot six_wheels(const std::vector<std::string>& overrides) {
+  const test::TemporaryFolder root;
+  test::UrdfRobot robot = test::skid_steer_urdf(1.2, 1.1);
+  for (const double y_m : {0.55, -0.55})
+    robot.wheels.push_back({.name = y_m > 0.0 ? "ml" : "mr", .x_m = 0.0, .y_m = y_m});
+  std::filesystem::create_directories(root / "models/six");
+  io::save_text(root / "models/six/six.urdf", robot.text());
+  return load_check_robot("six", overrides, {}, root / "");
+}
+
+// Three standard deviations of the gauge ratio: 3 * 0.0216 / 1.574 for radii with 0.1 % and tires that deflect by 2 %.
+TEST(CheckRobot, TheToleranceOfTheYawRateOfSixWheelsHasThatOfTheirRadii) {
+  EXPECT_EQ(load("wheeled").yaw_tolerance, 0.15);
+  EXPECT_EQ(six_wheels({"as_built.enabled=false"}).yaw_tolerance, 0.15);
+  const double radii = 3.0 * 0.0216 / 1.574 * 10.0 / std::sqrt(3.0);
+  EXPECT_NEAR(six_wheels({}).yaw_tolerance, 0.15 + radii, 0.005);
+  EXPECT_NEAR(six_wheels({"wheel_drive.tire_deflection_ratio=0.04"}).yaw_tolerance, 0.15 + 0.5 * radii, 0.005);
 }
 
 TEST(CheckRobot, OnlyTheSensorsOfTheFirmwareAreOn) {
