@@ -154,16 +154,18 @@ void Normalizer::add_supports() {
   std::vector<double> positions_m;
   if (center_m <= axle_m + 0.02) positions_m.push_back(axle_m + 0.8 * std::min(rear_m - axle_m, -2.0 * radius_m));
   if (center_m >= axle_m - 0.02) positions_m.push_back(axle_m + 0.8 * std::max(front_m - axle_m, 2.0 * radius_m));
+  const auto num_balls = static_cast<double>(supports_.size() + positions_m.size());
   for (const double x : positions_m) {
     supports_.push_back({.name = "support",
                          .center_m = {x, 0.5 * (min_y + max_y), ground_m_ + radius_m},
                          .radius_m = radius_m,
                          .link = ""});
-    assume("support",
-           fmt::format(
-               "a ball of radius {:.3g} m at x = {:.3f} m keeps the robot upright: the file has one axle and no caster",
-               radius_m, x),
-           "a caster, or a fixed sphere that touches the ground");
+    assume(
+        "support",
+        fmt::format("a ball of radius {:.3g} m at x = {:.3f} m keeps the robot upright, with {:.2g} % of the mass: the "
+                    "file has one axle and no caster",
+                    radius_m, x, 100.0 * kSupportMassRatio / num_balls),
+        "a caster, or a fixed sphere that touches the ground");
   }
 }
 

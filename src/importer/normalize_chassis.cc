@@ -246,7 +246,9 @@ void Normalizer::add_chassis() {
     result_.links.push_back(std::move(target));
   }
   if (!massless_.empty()) {
-    assume(list_of(massless_), "have no <inertial>: massless, since other links of the chassis have masses",
+    assume(list_of(massless_),
+           std::string(massless_.size() == 1 ? "has" : "have") +
+               " no <inertial>: massless, since other links of the chassis have masses",
            "<inertial> of the links");
   }
   // A free body needs a mass of its own: the heaviest fixed link gives it, unless the base has at least a

@@ -209,6 +209,13 @@ void Normalizer::add_legs() {
          fmt::format("walks with the gait of models/quadruped, scaled to {:.3g} kg and legs of {:.3g} m", mass_kg,
                      result_.leg_m),
          "locomotion in the settings file");
+  constexpr double kMinTested_kg = 6.0, kMaxTested_kg = 60.0;  // models/README.md
+  if (mass_kg >= kMinTested_kg && mass_kg <= kMaxTested_kg) return;
+  assume("mass",
+         fmt::format("{:.3g} kg are outside of the tested range of robots with legs, {:g} to {:g} kg: patrol check "
+                     "shows whether it walks",
+                     mass_kg, kMinTested_kg, kMaxTested_kg),
+         "<mass> of the links");
 }
 
 JointRange Normalizer::range_of_leg(const SourceJoint& joint) {

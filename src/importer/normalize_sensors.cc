@@ -77,6 +77,10 @@ void Normalizer::move_housing(const std::string& frame, const std::string& link)
 
 namespace {
 
+bool is_same_pose(const Pose3& a, const Pose3& b) {
+  return (a.position - b.position).norm() < 1e-6 && a.rotation.angularDistance(b.rotation) < 1e-6;
+}
+
 /// Returns a part of an assumption with the links whose names contain one of the words; empty if there are none. Only
 /// the text depends on names.
 std::string links_named(const std::set<std::string>& links, std::initializer_list<std::string_view> words) {
@@ -163,6 +167,7 @@ std::vector<SourceSensor> Normalizer::sensors_in_order() {
 void Normalizer::add_sensors() {
   std::map<std::string, std::vector<std::string>> others;
   std::set<std::string> added;
+  std::map<std::string, Pose3> T_base_added;
   for (const auto& [frame, link] : options_.frames) {
     if (!chassis_.contains(link))
       source_.fail(source_.link(link).line, link, fmt::format("frame {}: must be on the chassis", frame));
@@ -183,11 +188,16 @@ void Normalizer::add_sensors() {
     }
     std::string frame = sensor.frame;
     if (frame == "lidar" && added.contains(frame)) frame = "lidar_rear";
+    const Pose3 T_base_sensor = T_base(sensor.link) * sensor.T_link_sensor;
     if (!added.insert(frame).second) {
+      const auto first = T_base_added.find(frame);
+      // A file may describe one device twice.
+      if (first != T_base_added.end() && is_same_pose(first->second, T_base_sensor)) continue;
       if (!options_.frames.contains(frame)) others[frame].push_back(sensor.link);
       continue;
     }
-    add_frame(frame, T_base(sensor.link) * sensor.T_link_sensor, sensor.link);
+    T_base_added[frame] = T_base_sensor;
+    add_frame(frame, T_base_sensor, sensor.link);
     move_housing(frame, sensor.link);
     choose_preset(frame, sensor);
   }

@@ -66,6 +66,16 @@ TEST(PublicDescription, APlaceholderMassOfTheBaseIsJoinedWithTheHeaviestLink) {
       << "3 % of the mass are taken from it for the supports";
 }
 
+TEST(PublicDescription, LinksWithoutAnInertialAreARowInTheNumberOfTheirCount) {
+  const std::string mast = part("mast", shape("collision", box(0.1, 0.1, 0.1)));
+  const std::string rail = part("rail", shape("collision", box(0.1, 0.1, 0.1)));
+  Import one(with(mast)), two(with(mast + rail));
+  one.load();
+  two.load();
+  EXPECT_THAT(one.assumptions(), HasSubstr("| mast | has no &lt;inertial>: massless"));
+  EXPECT_THAT(two.assumptions(), HasSubstr("| mast, rail | have no &lt;inertial>: massless"));
+}
+
 TEST(PublicDescription, ALightCasterGetsMassOfTheChassis) {
   std::string text = caster();
   for (const auto& [old, by] : {std::pair{"<mass value=\"0.3\"/>", "<mass value=\"0.03\"/>"},

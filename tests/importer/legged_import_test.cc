@@ -123,6 +123,18 @@ TEST(LeggedImport, ABaseAtTheTailIsMovedToTheMiddleOfTheLegs) {
   EXPECT_THAT(import.assumptions(), HasSubstr("is moved by 0.400, 0.000, 0.050 m to the middle"));
 }
 
+TEST(LeggedImport, AMassOutsideOfTheTestedRangeIsARow) {
+  for (const double mass_kg : {5.0, 13.0, 86.8}) {
+    UrdfQuadruped robot = vendor_robot();
+    robot.mass_kg = mass_kg;
+    Import import(robot.text());
+    import.load();
+    const auto has_row = HasSubstr("are outside of the tested range of robots with legs, 6 to 60 kg");
+    if (mass_kg == 13.0) EXPECT_THAT(import.assumptions(), Not(has_row));
+    else EXPECT_THAT(import.assumptions(), has_row) << mass_kg;
+  }
+}
+
 TEST(LeggedImport, AnArmOnTheBackIsFixedAndReported) {
   std::string arm;
   std::string parent = "base_link";

@@ -35,6 +35,18 @@ TEST(ImportSensors, SensorsAreFoundByTypeAndByOption) {
   EXPECT_THAT(import.robot.settings, Not(HasSubstr("depth_camera")));
 }
 
+TEST(ImportSensors, ASensorThatTheFileHasTwiceIsNotLeftOutAndAnotherOneOfTheLinkIs) {
+  const std::string imu = R"(<gazebo reference="base_link"><sensor type="imu" name="z"/></gazebo>)";
+  Import twice(robot(chassis() + two_wheels() + caster() + imu + imu));
+  twice.load();
+  EXPECT_THAT(twice.assumptions(), Not(HasSubstr("further sensors of this type")));
+  const std::string moved =
+      R"(<gazebo reference="base_link"><sensor type="imu" name="y"><pose>0 0 0.1 0 0 0</pose></sensor></gazebo>)";
+  Import two(robot(chassis() + two_wheels() + caster() + imu + moved));
+  two.load();
+  EXPECT_THAT(two.assumptions(), HasSubstr("further sensors of this type are left out: base_link"));
+}
+
 TEST(ImportSensors, WithoutSensorsAnImuIsAtTheCenterOfMassAndNoLidarIsAdded) {
   Import import(robot(link("base_link", inertial(20.0, "0.05 0 0.02", 0.5) + shape("collision", box(0.6, 0.4, 0.2))) +
                       two_wheels() + caster()));
