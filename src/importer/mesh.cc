@@ -18,9 +18,9 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "importer/gltf_header.h"
 #include "importer/mesh_file_system.h"
 #include "importer/mesh_text.h"
-#include "importer/site/gltf_header.h"
 
 namespace patrol::importer {
 namespace {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "importer/site/gltf_header.h"
+#include "importer/gltf_header.h"
 #include "importer/site/texture_image.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"

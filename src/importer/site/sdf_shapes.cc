@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "importer/site/gltf_header.h"
+#include "importer/gltf_header.h"
 #include "importer/site/mesh_site.h"
 #include "importer/site/polygon_mesh.h"
 #include "importer/site/texture_image.h"

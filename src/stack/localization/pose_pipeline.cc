@@ -181,8 +181,7 @@ std::optional<SiteRegistration> PosePipeline::register_to_site(Time now) {
 
 bool PosePipeline::awaits_first_scan(Time now) const {
   constexpr Time kMaxWait = std::chrono::seconds(2);
-  return localizer_->is_mapping() && num_scans_ == 0 && first_odometry_ &&
-         now < *first_odometry_ + settle_ + kMaxWait;
+  return localizer_->is_mapping() && num_scans_ == 0 && first_odometry_ && now < *first_odometry_ + settle_ + kMaxWait;
 }
 
 std::optional<std::string> PosePipeline::mapping_failure() const {

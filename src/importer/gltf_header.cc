@@ -1,4 +1,4 @@
-#include "importer/site/gltf_header.h"
+#include "importer/gltf_header.h"
 
 #include <algorithm>
 #include <array>
