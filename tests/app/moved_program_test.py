@@ -22,7 +22,8 @@ def install(folder):
     source = str(SOURCE.resolve()).encode()
     nowhere = (b"/nowhere" + b"_" * len(source))[:len(source)]
     program = folder / "bin/patrol"
-    program.write_bytes(PATROL.read_bytes().replace(source, nowhere))
+    path = re.compile(rb"(?<![\w.])" + re.escape(source) + rb"(?=[/:\0])")  # not in $ORIGIN/../lib/patrol
+    program.write_bytes(path.sub(nowhere, PATROL.read_bytes()))
     program.chmod(0o755)
     for line in subprocess.run(["ldd", PATROL], capture_output=True, text=True, check=True).stdout.splitlines():
         found = re.match(r"\s*(libmujoco\S*) => (\S+)", line)
