@@ -7,7 +7,7 @@ make_debian_root() {
   mount -t proc proc "$root/proc"  # the program finds its library relative to itself
   mount --rbind /dev "$root/dev"
   cp /etc/resolv.conf "$root/etc/resolv.conf"
-  printf '127.0.0.1 localhost\n' >"$root/etc/hosts"
+  printf '127.0.0.1 localhost\n127.0.1.1 %s\n' "$(hostname)" >"$root/etc/hosts"
 }
 
 # release_debian_root FOLDER: unmounts.

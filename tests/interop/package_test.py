@@ -4,6 +4,7 @@ Usage: package_test.py CMAKE BUILD CONSUMER
 """
 
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -52,9 +53,9 @@ class Package(unittest.TestCase):
         self.assertIn("localize", configured.stderr)
 
     def test_the_prefix_names_nothing_of_the_source_tree(self):
-        source = str(CONSUMER.parents[2])
+        source = re.compile(r"(?<![\w.}])" + re.escape(str(CONSUMER.parents[2])))  # not in lib/cmake/patrol
         for file in (self.root / "prefix").rglob("*.cmake"):
-            self.assertNotIn(source, file.read_text(), file)
+            self.assertNotRegex(file.read_text(), source, file)
 
 
 if __name__ == "__main__":
