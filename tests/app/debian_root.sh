@@ -5,8 +5,10 @@ make_debian_root() {
   local root=$1
   if [ ! -e "$root/bin/sh" ]; then mmdebstrap --quiet --variant=apt ${2:+--include="$2"} bookworm "$root"; fi
   mount -t proc proc "$root/proc"  # the program finds its library relative to itself
-  mount --rbind /dev "$root/dev"
-  mount --rbind /sys "$root/sys"  # control groups, for Slurm
+  for folder in /dev /sys; do  # /sys has the control groups, for Slurm
+    mount --rbind "$folder" "$root$folder"
+    mount --make-rslave "$root$folder"  # unmounting it leaves that of this machine alone
+  done
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   printf '127.0.0.1 localhost\n127.0.1.1 %s\n' "$(hostname)" >"$root/etc/hosts"
 }
