@@ -28,6 +28,11 @@ class StageProfiler {
     ++calls_[part];
     return ScopedTimer(seconds_[part]);
   }
+  /// Adds the times and calls of another profiler.
+  void add(const StageProfiler& other) {
+    for (const auto& [part, seconds] : other.seconds_) seconds_[part] += seconds;
+    for (const auto& [part, calls] : other.calls_) calls_[part] += calls;
+  }
   const std::map<std::string, double>& seconds() const { return seconds_; }
   const std::map<std::string, std::uint64_t>& calls() const { return calls_; }
 

@@ -87,7 +87,7 @@ Stack make_stack(const StackSettings& settings, const RobotDescription& robot, c
                            .map_registration = start.map_registration,
                            .has_mapping_drive = is_tunnel(settings) && start.has_teleop,
                            .neighbor_model = std::move(start.neighbor_model)};
-  return Stack({.pose = PosePipeline(settings, robot, site_in_map, localizer, start.seed, start.site),
+  return Stack({.pose = PosePipeline(settings, robot, site_in_map, localizer, start.seed, start.site, start.has_thread),
                 .motion = std::move(motion),
                 .mission = std::move(mission),
                 .instruments = std::move(instruments),

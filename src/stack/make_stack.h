@@ -26,6 +26,7 @@ struct StackStart {
   SiteFrame site = {};                ///< pose of the surveyed start in site, and datum
   double map_period_s = 5.0;
   std::uint64_t seed = 0;
+  bool has_thread = false;  ///< whether SLAM has a thread of its own, with the same results
 };
 
 /// Composes a stack. The settings select odometry source, localizer and mission; the robot description and the survey

@@ -26,7 +26,7 @@ void Stack::handle(const SensorMessage& message, Time received) {
   if (!parts_.sensor_monitor.receive(message, received)) return;
   const auto station_pose_at = [this](Time stamp) { return parts_.pose.station_pose_at(stamp); };
   std::visit(Overloaded{
-                 [&](const LaserScan& scan) { handle_scan(scan); },
+                 [&](const LaserScan& scan) { handle_scan(scan, received); },
                  [&](const UltrasonicRange& range) {
                    if (const auto station_pose = station_pose_at(range.stamp)) parts_.motion.add(range, *station_pose);
                  },
@@ -44,10 +44,10 @@ void Stack::handle(const SensorMessage& message, Time received) {
   parts_.instruments.add(message, station_pose_at);
 }
 
-void Stack::handle_scan(const LaserScan& raw) {
+void Stack::handle_scan(const LaserScan& raw, Time received) {
   const std::optional<LevelScan> scan = parts_.pose.level(raw, output_);
   if (!scan) return;
-  const ScanPose pose = parts_.pose.localize(*scan, output_);
+  const ScanPose pose = parts_.pose.localize(*scan, received, output_);
   const auto timer = output_.time_stage("planning");
   if (const std::optional<DockDetection> dock = parts_.motion.add(*scan, pose)) parts_.pose.add(*dock);
 }
@@ -58,6 +58,7 @@ void Stack::handle_fall(Time now) {
 
 void Stack::step(Time now) {
   const std::optional<OdometryEstimate> odometry = parts_.pose.update_odometry();
+  parts_.pose.correct(now, output_);
   if (!odometry) return;
   if (now >= next_odometry_) {
     next_odometry_ = next_in_cycle(next_odometry_, kOdometryPeriod, now);
@@ -97,14 +98,14 @@ void Stack::publish_map(Time now) {
 
 /// Completes the map; everything that the robot has located in it follows its final optimization. Aborts the mission if
 /// no scan was used for the map: no localizer works on it.
-void Stack::finish_map(Time now, const PoseEstimate& pose) {
+void Stack::finish_map(Time now, const OdometryEstimate& odometry) {
   if (const std::optional<std::string> failure = parts_.pose.mapping_failure()) {
     if (!mission_is_over()) output_.publish(parts_.mission->abort(now, EventKind::kMissionFailed, *failure));
     return publish_map(now);
   }
   {
     const auto timer = output_.time_stage("slam");
-    const std::optional<localize::MapCorrection> correction = parts_.pose.finish_map(pose);
+    const std::optional<localize::MapCorrection> correction = parts_.pose.finish_map(odometry, output_);
     if (!correction) return;
     for (Event& event : parts_.mission->correct_map(now, *correction)) output_.publish(std::move(event));
   }
@@ -114,8 +115,7 @@ void Stack::finish_map(Time now, const PoseEstimate& pose) {
 
 void Stack::finish(Time now) {
   const std::optional<OdometryEstimate> odometry = parts_.pose.update_odometry();
-  if (odometry && parts_.pose.is_mapping())
-    return finish_map(now, parts_.pose.pose_at(odometry->stamp, to_pose2(odometry->T_odom_body)));
+  if (odometry && parts_.pose.is_mapping()) return finish_map(now, *odometry);
   publish_map(now);
 }
 
@@ -172,7 +172,7 @@ void Stack::advance_mission(const Period& period) {
     // The mission may be over, with a drive that saved no goals: report the failure all the same.
     if (const std::optional<std::string> failure = parts_.pose.mapping_failure())
       output_.publish(parts_.mission->abort(period.now, EventKind::kMissionFailed, *failure));
-    finish_map(period.now, period.pose);
+    finish_map(period.now, period.odometry);
   }
   relocalize(output.relocalization, period.odometry);
   task_ = std::move(output.task);

@@ -66,9 +66,9 @@ class Stack {
     PoseEstimate pose;
   };
 
-  void handle_scan(const LaserScan& raw);
+  void handle_scan(const LaserScan& raw, Time received);
   void publish_map(Time now);
-  void finish_map(Time now, const PoseEstimate& pose);
+  void finish_map(Time now, const OdometryEstimate& odometry);
   void follow_registration(Time now);
   void monitor_sensors(Time now, const Pose2& T_odom_body);
   VelocityCommand control(const Period& period);

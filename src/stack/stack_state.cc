@@ -3,6 +3,7 @@
 #include "stack/instruments/gas_instrument.h"
 #include "stack/instruments/lining_instrument.h"
 #include "stack/instruments/water_instrument.h"
+#include "stack/localization/delayed_localizer.h"
 #include "stack/localization/known_map_localizer.h"
 #include "stack/localization/map_then_localize.h"
 #include "stack/localization/slam_localizer.h"
@@ -43,6 +44,16 @@ void WaterInstrument::serialize_state(StateArchive& archive) {
   if (!has_sounding) sounding_.reset();
   if (has_sounding && !sounding_) sounding_.emplace(settings_.sounding, geometry_, Time{});
   archive.part(sounding_);
+}
+
+void DelayedLocalizer::serialize_state(StateArchive& archive) {
+  wait();
+  std::vector<PoseCorrection> corrections;
+  for (Pending& pending : pending_) corrections.push_back(*pending.correction);
+  archive(localizer_, corrections);
+  pending_.clear();
+  for (PoseCorrection& correction : corrections)
+    pending_.push_back({.ticket = 0, .correction = std::make_unique<PoseCorrection>(std::move(correction))});
 }
 
 void KnownMapLocalizer::serialize_state(StateArchive& archive) {

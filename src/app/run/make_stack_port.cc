@@ -34,11 +34,19 @@ void require_stations(const Scenario& scenario, const ScenarioFiles& files) {
       files.goals.empty() && !files.has_teleop() ? "" : ", or use stack.mission_type=tunnel, which drives to goals"));
 }
 
+/// A thread of SLAM has work only while corrections are delayed. With it, turns without a delay do not need one of
+/// their own. The processor time of a measured turn contains that of SLAM.
+std::unique_ptr<StackPort> make_built_in_stack(const Scenario& scenario, const ScenarioFiles& files, bool has_thread) {
+  const stack::ComputeSettings& compute = scenario.stack.compute;
+  const bool slam_has_thread = has_thread && scenario.stack.slam_delay_s > 0.0 && compute.model != "measured";
+  return std::make_unique<BuiltInStack>(make_stack(scenario, files, slam_has_thread), compute,
+                                        has_thread && (compute.model == "fixed" || !slam_has_thread));
+}
+
 }  // namespace
 
 std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const ScenarioFiles& files, StackContext context) {
-  if (scenario.stack.command.empty())
-    return std::make_unique<BuiltInStack>(make_stack(scenario, files), scenario.stack.compute, context.has_thread);
+  if (scenario.stack.command.empty()) return make_built_in_stack(scenario, files, context.has_thread);
   StackConnection connection{.command = scenario.stack.command,
                              .output = std::move(context.output),
                              .is_interrupted = std::move(context.is_interrupted)};
@@ -47,7 +55,7 @@ std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const Scena
       std::move(connection), scenario.stack);
 }
 
-stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
+stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files, bool has_thread) {
   require_stations(scenario, files);
   return stack::make_stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
                            {.map = files.map,
@@ -58,7 +66,8 @@ stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files) {
                             .has_teleop = files.has_teleop(),
                             .site = {.T_site_start = files.T_site_start, .datum = files.datum},
                             .map_period_s = scenario.log.map_period_s,
-                            .seed = scenario.seed});
+                            .seed = scenario.seed,
+                            .has_thread = has_thread});
 }
 
 }  // namespace patrol::app

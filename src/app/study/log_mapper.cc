@@ -8,8 +8,17 @@
 
 namespace patrol::app {
 
+namespace {
+
+stack::StackSettings without_delay(stack::StackSettings settings) {
+  settings.slam_delay_s = 0.0;
+  return settings;
+}
+
+}  // namespace
+
 LogMapper::LogMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed)
-    : pipeline_(settings, robot, {}, {}, seed) {}
+    : pipeline_(without_delay(settings), robot, {}, {}, seed) {}
 
 void LogMapper::map(const std::filesystem::path& log_mcap) {
   io::LogHandlers handlers;
@@ -27,7 +36,7 @@ void LogMapper::handle(const LaserScan& raw) {
   const std::optional<LevelScan> scan = pipeline_.level(raw, output_);
   if (!scan) return;
   const double start_s = thread_cpu_time_s();
-  const stack::ScanPose pose = pipeline_.localize(*scan, output_);
+  const stack::ScanPose pose = pipeline_.localize(*scan, scan->stamp, output_);
   seconds_ += thread_cpu_time_s() - start_s;
   T_map_body_.push_back({.stamp = scan->stamp, .pose = to_pose3(pose.T_map_body)});
   output_.take_messages();

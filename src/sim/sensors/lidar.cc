@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -102,7 +103,7 @@ void Lidar::begin_revolution() {
   if (errors_.rate_std > 0.0) update_rate();
   revolution_ = std::make_shared<Revolution>();
   revolution_->last_range_m.assign(elevation_.size(), kInfinity);
-  if (settings_.rings > 1) {
+  if (has_rings()) {
     revolution_->cloud.stamp = instant_of(next_beam_);
     return;
   }
@@ -154,23 +155,34 @@ void Lidar::submit() {
   else measure_beams();
 }
 
-/// Waits until all fired beams are measured.
-void Lidar::finish_shots() {
+void Lidar::finish_revolution() {
   submit();
-  if (worker_) worker_->wait(submitted_);
+  LaserScan& scan = revolution_->scan;
+  if (!has_rings() && !settings_.motion_distortion) {
+    scan.stamp = instant_of(next_beam_ - 1);
+    scan.time_increment_s = 0.0;
+  }
+  fired_.push_back(
+      {.ticket = submitted_, .revolution = revolution_, .stamp = has_rings() ? revolution_->cloud.stamp : scan.stamp});
 }
 
-void Lidar::finish_revolution() {
-  finish_shots();
-  if (settings_.rings > 1) {
-    clouds_.push_back(std::move(revolution_->cloud));
-    return;
-  }
-  if (!settings_.motion_distortion) {
-    revolution_->scan.stamp = instant_of(next_beam_ - 1);
-    revolution_->scan.time_increment_s = 0.0;
-  }
-  scans_.push_back(std::move(revolution_->scan));
+Lidar::Revolution& Lidar::measured(const FiredRevolution& fired) const {
+  if (worker_) worker_->wait(fired.ticket);
+  return *fired.revolution;
+}
+
+std::vector<LaserScan> Lidar::take_scans() {
+  std::vector<LaserScan> scans;
+  if (has_rings()) return scans;
+  for (const FiredRevolution& fired : take_fired()) scans.push_back(std::move(measured(fired).scan));
+  return scans;
+}
+
+std::vector<PointCloud> Lidar::take_clouds() {
+  std::vector<PointCloud> clouds;
+  if (!has_rings()) return clouds;
+  for (const FiredRevolution& fired : take_fired()) clouds.push_back(std::move(measured(fired).cloud));
+  return clouds;
 }
 
 Eigen::Vector3d Lidar::direction(std::size_t column, std::size_t ring) const {
@@ -323,14 +335,37 @@ class LidarOnBody : public Sensor {
     if (tick.is_first()) return;
     const auto timer = tick.clock.time_stage("lidar");
     lidar_.advance(tick.last, tick.now, tick.T_world_body_last, tick.T_world_body);
-    for (LaserScan& scan : lidar_.take_scans()) readings.emplace_back(Scan{std::move(scan)});
-    for (PointCloud& cloud : lidar_.take_clouds()) readings.emplace_back(std::move(cloud));
+    for (Lidar::FiredRevolution& fired : lidar_.take_fired()) {
+      if (lidar_.has_rings()) {
+        readings.emplace_back(std::in_place_type<PointCloud>);
+        std::get<PointCloud>(readings.back()).stamp = fired.stamp;
+      } else {
+        readings.emplace_back(std::in_place_type<Scan>);
+        std::get<Scan>(readings.back()).stamp = fired.stamp;
+      }
+      fired_.push_back(std::move(fired));
+    }
+  }
+
+  void complete(SensorMessage& reading) override {
+    Lidar::Revolution& measured = lidar_.measured(fired_.front());
+    if (auto* cloud = std::get_if<PointCloud>(&reading)) fill(*cloud, std::move(measured.cloud));
+    else fill(std::get<Scan>(reading), Scan{std::move(measured.scan)});
+    fired_.pop_front();
   }
 
   void serialize_state(StateArchive& archive) override { archive(lidar_); }
 
  private:
+  /// The stamp has become that of the device's clock.
+  template <typename Message>
+  static void fill(Message& reading, Message measured) {
+    measured.stamp = reading.stamp;
+    reading = std::move(measured);
+  }
+
   Lidar lidar_;
+  std::deque<Lidar::FiredRevolution> fired_;  ///< revolutions whose messages have to be completed, in order
 };
 
 }  // namespace

@@ -39,14 +39,34 @@ class Lidar {
   /// Fires the beams whose instants are in (from, to]; the body pose is interpolated in between.
   void advance(Time from, Time to, const Pose3& T_world_body_from, const Pose3& T_world_body_to);
 
-  /// Removes and returns the revolutions completed since the last call.
-  std::vector<LaserScan> take_scans() { return std::exchange(scans_, {}); }
-  std::vector<PointCloud> take_clouds() { return std::exchange(clouds_, {}); }
+  /// Readings of one revolution: a scan, or a cloud of several rings.
+  struct Revolution {
+    LaserScan scan;
+    PointCloud cloud;
+    std::vector<double> last_range_m;  ///< [ring], range of the last beam without noise
+  };
+  /// Revolution whose beams have been fired, and may still be measured by the worker.
+  struct FiredRevolution {
+    BackgroundWorker::Ticket ticket = 0;
+    std::shared_ptr<Revolution> revolution;
+    Time stamp{};
+  };
 
+  /// Removes and returns the revolutions completed since the last call.
+  std::vector<FiredRevolution> take_fired() { return std::exchange(fired_, {}); }
+  /// Waits until the beams of a revolution are measured.
+  Revolution& measured(const FiredRevolution& fired) const;
+  /// Remove and return the revolutions completed since the last call, when they are measured.
+  std::vector<LaserScan> take_scans();
+  std::vector<PointCloud> take_clouds();
+  bool has_rings() const { return settings_.rings > 1; }
+
+  /// Precondition: the completed revolutions have been taken.
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    finish_shots();
-    archive(next_beam_, revolution_begin_ns_, revolution_ns_, rate_error_, *revolution_, scans_, clouds_);
+    submit();
+    if (worker_) worker_->wait(submitted_);
+    archive(next_beam_, revolution_begin_ns_, revolution_ns_, rate_error_, *revolution_);
   }
 
  private:
@@ -55,12 +75,6 @@ class Lidar {
     double intensity;
   };
 
-  /// Readings of one revolution, being measured.
-  struct Revolution {
-    LaserScan scan;
-    PointCloud cloud;
-    std::vector<double> last_range_m;  ///< [ring], range of the last beam without noise
-  };
   struct Beam {
     std::int64_t number;  ///< since the start
     Time instant;
@@ -74,7 +88,6 @@ class Lidar {
 
   Time instant_of(std::int64_t beam) const;
   void submit();
-  void finish_shots();
   void finish_revolution();
   void fire(const Shots& shots, Revolution& revolution) const;
   RayCone cone_of(std::span<const Beam> beams) const;
@@ -108,8 +121,7 @@ class Lidar {
   std::vector<Shots> shots_;  ///< not yet submitted, [tick]
   BackgroundWorker* worker_;
   BackgroundWorker::Ticket submitted_ = 0;
-  std::vector<LaserScan> scans_;
-  std::vector<PointCloud> clouds_;
+  std::vector<FiredRevolution> fired_;
 };
 
 }  // namespace patrol::sim

@@ -44,10 +44,12 @@ Eigen::Matrix3d PosePipeline::surveyed_covariance() {
 }
 
 PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-                           const LocalizerStart& start, std::uint64_t seed, const SiteFrame& site)
+                           const LocalizerStart& start, std::uint64_t seed, const SiteFrame& site, bool has_thread)
     : settle_(from_seconds(settings.odometry_settling_time_s)),
       odometry_(make_odometry_source(settings, robot)),
       leveler_(robot.T_body("lidar"), settings.scan_leveling),
+      localizer_(make_localizer(settings, robot, site_in_map, start, seed), from_seconds(settings.slam_delay_s),
+                 has_thread),
       registrar_(for_map(settings.registration, start.map.has_value()), site, start.map_registration,
                  settings.uwb_filter.calibration()),
       T_start_site_(site.T_site_start.inverse()),
@@ -58,7 +60,6 @@ PosePipeline::PosePipeline(const StackSettings& settings, const RobotDescription
       uwb_calibration_(settings.uwb_filter.calibration()),
       line_of_sight_(settings.line_of_sight),
       calibration_period_(from_seconds(settings.calibration.period_s)) {
-  localizer_ = make_localizer(settings, robot, site_in_map, start, seed);
   if (robot.T_body_sensor.contains("uwb"))
     range_pose_.emplace(settings.uwb_filter, site_in_map.anchors, robot.T_body("uwb"));
   if (robot.T_body_sensor.contains("gnss")) T_body_gnss_ = robot.T_body("gnss");
@@ -89,7 +90,7 @@ void PosePipeline::add_to_calibration(const Imu& imu) {
 
 /// Uses the height of the UWB filter: tunnels are not level.
 void PosePipeline::add_to_calibration(const UwbRange& range, const Pose3& T_odom_body) {
-  if (!range_pose_ || !range_pose_->has_started() || !localizer_->has_pose() || localizer_->is_lost()) return;
+  if (!range_pose_ || !range_pose_->has_started() || !localizer_.has_pose() || localizer_.is_lost()) return;
   calibrator_->add(
       {.range = range,
        .pose = tracker_.at(range.stamp, to_pose2(T_odom_body)),
@@ -105,13 +106,13 @@ void PosePipeline::add_range(const UwbRange& range) {
   const bool is_usable = is_in_line_of_sight(range, *T_odom_body);
   if (is_usable && calibrator_) add_to_calibration(range, *T_odom_body);
   if (is_usable) add_to_registration(range, *T_odom_body);
-  if (is_usable || !localizer_->is_mapping())
-    localizer_->add(RangeWithOdometry{.range = range, .T_odom_body = *T_odom_body, .height_m = height_m()});
+  if (is_usable || !localizer_.is_mapping())
+    localizer_.add(RangeWithOdometry{.range = range, .T_odom_body = *T_odom_body, .height_m = height_m()});
 }
 
 /// Returns whether the range is used: true without a pose, which gives no prediction.
 bool PosePipeline::is_in_line_of_sight(const UwbRange& range, const Pose3& T_odom_body) {
-  if (!localizer_->has_pose() || localizer_->is_lost()) {
+  if (!localizer_.has_pose() || localizer_.is_lost()) {
     line_of_sight_.reset();
     return true;
   }
@@ -130,19 +131,19 @@ double PosePipeline::height_m() const {
 
 void PosePipeline::add_to_registration(const UwbRange& range, const Pose3& T_odom_body) {
   const auto anchor = std::ranges::find(anchors_in_site_, range.anchor, &UwbAnchor::number);
-  if (anchor == anchors_in_site_.end() || !localizer_->has_pose() || localizer_->is_lost()) return;
+  if (anchor == anchors_in_site_.end() || !localizer_.has_pose() || localizer_.is_lost()) return;
   if (const std::optional<PoseFromScan> pose = pose_from_scan(range.stamp))
     registrar_.add(range, *anchor, *pose, uwb_antenna_in_level(T_odom_body.rotation, T_body_uwb_, height_m()));
 }
 
 void PosePipeline::set_site(const Route& site_in_map) {
   anchors_in_map_ = site_in_map.anchors;
-  localizer_->set_anchors(site_in_map.anchors);
+  localizer_.wait().set_anchors(site_in_map.anchors);
   if (range_pose_) range_pose_->set_anchors(site_in_map.anchors);
 }
 
 void PosePipeline::add_fix(const GnssFix& fix) {
-  if (!T_body_gnss_ || !registrar_.uses_gnss() || !localizer_->has_pose()) return;
+  if (!T_body_gnss_ || !registrar_.uses_gnss() || !localizer_.has_pose()) return;
   const std::optional<PoseFromScan> pose = pose_from_scan(fix.stamp);
   const std::optional<StationPose> station = station_pose_at(fix.stamp);
   if (!pose || !station) return;
@@ -150,16 +151,16 @@ void PosePipeline::add_fix(const GnssFix& fix) {
   const std::optional<GnssPosition> position = registrar_.position_of(fix, p_level_antenna);
   if (!position) return;
   registrar_.add(*position, *pose);
-  localizer_->add(slam::PositionMeasurement{.stamp = fix.stamp,
-                                            .p_survey_antenna = T_start_site_ * position->content.p_site_antenna,
-                                            .std_m = position->content.std_m,
-                                            .correlation_time_s = position->correlation_time_s,
-                                            .T_odom_body = to_pose2(*odometry_->T_odom_body_at(fix.stamp)),
-                                            .p_level_antenna = p_level_antenna});
+  localizer_.add(slam::PositionMeasurement{.stamp = fix.stamp,
+                                           .p_survey_antenna = T_start_site_ * position->content.p_site_antenna,
+                                           .std_m = position->content.std_m,
+                                           .correlation_time_s = position->correlation_time_s,
+                                           .T_odom_body = to_pose2(*odometry_->T_odom_body_at(fix.stamp)),
+                                           .p_level_antenna = p_level_antenna});
 }
 
 void PosePipeline::add(const DockDetection& detection) {
-  if (!T_site_docked_ || !localizer_->has_pose() || localizer_->is_lost()) return;
+  if (!T_site_docked_ || !localizer_.has_pose() || localizer_.is_lost()) return;
   if (const std::optional<PoseFromScan> pose = pose_from_scan(detection.stamp))
     registrar_.add(detection, *T_site_docked_, *pose);
 }
@@ -176,24 +177,25 @@ std::optional<PoseFromScan> PosePipeline::pose_from_scan(Time stamp) const {
 
 std::optional<SiteRegistration> PosePipeline::register_to_site(Time now) {
   if (num_scans_ == 0 || !registrar_.is_due(now)) return std::nullopt;
-  return registrar_.update(now, localizer_->path());
+  return registrar_.update(now, localizer_.wait().path());
 }
 
 bool PosePipeline::awaits_first_scan(Time now) const {
   constexpr Time kMaxWait = std::chrono::seconds(2);
-  return localizer_->is_mapping() && num_scans_ == 0 && first_odometry_ && now < *first_odometry_ + settle_ + kMaxWait;
+  return localizer_.is_mapping() && num_scans_ == 0 && first_odometry_ && now < *first_odometry_ + settle_ + kMaxWait;
 }
 
 std::optional<std::string> PosePipeline::mapping_failure() const {
-  if (!localizer_->is_mapping() || scan_counts_.num_used() > 0) return std::nullopt;
+  if (!localizer_.is_mapping() || scan_counts_.num_used() > 0) return std::nullopt;
   return scan_counts_.failure_text(max_mapping_tilt_rad_);
 }
 
-std::optional<localize::MapCorrection> PosePipeline::finish_map(const PoseEstimate& pose) {
-  if (!localizer_->is_mapping()) return std::nullopt;
-  tracker_.move_map(localizer_->finish_map(pose));
+std::optional<localize::MapCorrection> PosePipeline::finish_map(const OdometryEstimate& odometry, StackOutput& output) {
+  if (!localizer_.is_mapping()) return std::nullopt;
+  correct(Time::max(), output);
+  tracker_.move_map(localizer_.wait().finish_map(tracker_.at(odometry.stamp, to_pose2(odometry.T_odom_body))));
   registrar_.request();
-  const std::vector<Pose2> path = localizer_->path();
+  const std::vector<Pose2> path = localizer_.wait().path();
   localize::MapCorrection correction{.stamps = std::move(mapped_), .T_map_old = {}};
   for (std::size_t i = 0; i < correction.stamps.size(); ++i)
     correction.T_map_old.push_back(path[i] * T_map_mapped_[i].inverse());
@@ -241,26 +243,34 @@ std::optional<LevelScan> PosePipeline::level_as_stamped(const LaserScan& scan, S
       scan, [this](Time stamp) { return odometry_->T_odom_body_at(stamp); }, odometry_->height_above_ground_m());
 }
 
-ScanPose PosePipeline::localize(const LevelScan& scan, StackOutput& output) {
+ScanPose PosePipeline::localize(const LevelScan& scan, Time received, StackOutput& output) {
   const Pose2 T_odom_body = to_pose2(*odometry_->T_odom_body_at(scan.stamp));
-  const PoseEstimate estimate = localizer_->update(scan, T_odom_body, output);
-  tracker_.correct(scan.stamp, T_odom_body, estimate.T_map_body, estimate.covariance);
-  ++num_scans_;
-  T_odom_scan_ = T_odom_body;
-  if (localizer_->is_mapping()) {
-    mapped_.push_back(scan.stamp);
-    T_map_mapped_.push_back(estimate.T_map_body);
-  }
+  localizer_.begin_update(scan, T_odom_body, received);
+  correct(received, output);
   return {.T_odom_body = T_odom_body, .T_map_body = tracker_.at(scan.stamp, T_odom_body).T_map_body};
+}
+
+void PosePipeline::correct(Time now, StackOutput& output) {
+  while (std::optional<PoseCorrection> scan = localizer_.take_due(now)) {
+    const PoseEstimate& estimate = scan->estimate;
+    tracker_.correct(scan->stamp, scan->T_odom_body, estimate.T_map_body, estimate.covariance);
+    ++num_scans_;
+    T_odom_scan_ = scan->T_odom_body;
+    if (localizer_.is_mapping()) {
+      mapped_.push_back(scan->stamp);
+      T_map_mapped_.push_back(estimate.T_map_body);
+    }
+    output.take(std::move(scan->output));
+  }
 }
 
 /// Starts at the first known pose. Publishes from the first scan on, like the other poses.
 void PosePipeline::publish_range_pose(const OdometryEstimate& odometry, const PoseEstimate& pose, StackOutput& output) {
   if (!range_pose_ || !range_pose_->has_anchors()) return;
   if (!range_pose_->has_started()) {
-    if (!localizer_->has_pose()) return;
+    if (!localizer_.has_pose()) return;
     range_pose_->set_initial_pose(odometry, odometry_->height_above_ground_m(), pose.T_map_body,
-                                  localizer_->is_mapping() ? surveyed_covariance() : pose.covariance);
+                                  localizer_.is_mapping() ? surveyed_covariance() : pose.covariance);
   }
   const UwbPoseEstimate estimate = range_pose_->predict(odometry, odometry_->twist_std());
   if (has_settled(odometry.stamp)) output.publish(estimate);
@@ -289,7 +299,7 @@ std::optional<StationPose> PosePipeline::station_pose_at(Time stamp) const {
 }
 
 void PosePipeline::restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry) {
-  localizer_->set_initial_pose(T_map_body, surveyed_covariance());
+  localizer_.wait().set_initial_pose(T_map_body, surveyed_covariance());
   tracker_ = localize::MapPoseTracker();
   tracker_.correct(odometry.stamp, to_pose2(odometry.T_odom_body), T_map_body, surveyed_covariance());
   if (range_pose_)

@@ -20,6 +20,7 @@
 #include "localize/map_pose_tracker.h"
 #include "localize/scan_leveler.h"
 #include "stack/instruments/station_pose.h"
+#include "stack/localization/delayed_localizer.h"
 #include "stack/localization/make_localizer.h"
 #include "stack/localization/odometry_source.h"
 #include "stack/localization/range_pose_tracker.h"
@@ -41,9 +42,10 @@ class PosePipeline {
   /// Returns the covariance of a surveyed pose at which the robot has been placed.
   static Eigen::Matrix3d surveyed_covariance();
 
-  /// Throws InputError when settings, robot and map are inconsistent.
+  /// `has_thread`: whether SLAM has a thread of its own, with the same results. Throws InputError when settings, robot
+  /// and map are inconsistent.
   PosePipeline(const StackSettings& settings, const RobotDescription& robot, const Route& site_in_map,
-               const LocalizerStart& start, std::uint64_t seed, const SiteFrame& site = {});
+               const LocalizerStart& start, std::uint64_t seed, const SiteFrame& site = {}, bool has_thread = false);
 
   /// Processes a sensor message other than a scan; `level` and `localize` process scans.
   void add(const SensorMessage& message, StackOutput& output);
@@ -51,8 +53,11 @@ class PosePipeline {
   std::optional<OdometryEstimate> update_odometry();
   /// Returns the level scan; none before odometry has settled, because the first scan defines the map's origin.
   std::optional<LevelScan> level(const LaserScan& scan, StackOutput& output);
-  /// Corrects the pose by a scan and publishes the estimates.
-  ScanPose localize(const LevelScan& scan, StackOutput& output);
+  /// Gives the localizer a scan that arrived at `received`. Returns the pose at the scan as known by then: by SLAM it
+  /// does not contain the scan itself.
+  ScanPose localize(const LevelScan& scan, Time received, StackOutput& output);
+  /// Corrects the pose by the scans whose computation ends by `now`, and publishes their estimates.
+  void correct(Time now, StackOutput& output);
   /// Adds a detection of the surveyed charging post to the registration of the map.
   void add(const DockDetection& detection);
   /// Publishes the pose from odometry and UWB ranges alone, if robot and site have UWB.
@@ -70,21 +75,21 @@ class PosePipeline {
   PoseEstimate pose_at(Time stamp, const Pose2& T_odom_body) const { return tracker_.at(stamp, T_odom_body); }
   /// Returns the body pose at an instant; none outside the time span of odometry.
   std::optional<StationPose> station_pose_at(Time stamp) const;
-  OccupancyGrid map() { return localizer_->map(); }
-  bool is_mapping() const { return localizer_->is_mapping(); }
-  bool is_lost() const { return localizer_->is_lost(); }
+  OccupancyGrid map() { return localizer_.wait().map(); }
+  bool is_mapping() const { return localizer_.is_mapping(); }
+  bool is_lost() const { return localizer_.is_lost(); }
 
   /// Returns whether the first scan of the map is still to come. It must be taken at rest, at the map's origin. After
   /// the settling time of odometry the answer is true for 2 s at most: scans may be missing.
   bool awaits_first_scan(Time now) const;
   /// Returns why there is no map, as a sentence; none unless the robot maps and no scan was used.
   std::optional<std::string> mapping_failure() const;
-  /// Ends the mapping with its final optimization, which the pose and the registration to the site follow. `pose`:
-  /// present pose. Returns the motion of the map; none where the map is given or complete.
-  std::optional<localize::MapCorrection> finish_map(const PoseEstimate& pose);
-  void start_global_localization() { localizer_->start_global_localization(); }
+  /// Ends the mapping with its final optimization, which the pose and the registration to the site follow. `odometry`:
+  /// present odometry. Returns the motion of the map; none where the map is given or complete.
+  std::optional<localize::MapCorrection> finish_map(const OdometryEstimate& odometry, StackOutput& output);
+  void start_global_localization() { localizer_.wait().start_global_localization(); }
   /// Starts at the surveyed start, the origin of map, before the robot has moved.
-  void start_at_survey() { localizer_->set_initial_pose(Pose2{}, surveyed_covariance()); }
+  void start_at_survey() { localizer_.wait().set_initial_pose(Pose2{}, surveyed_covariance()); }
   /// Restarts at a surveyed pose; every component discards its previous pose.
   void restart_at(const Pose2& T_map_body, const OdometryEstimate& odometry);
 
@@ -112,7 +117,7 @@ class PosePipeline {
   Time settle_;
   std::unique_ptr<OdometrySource> odometry_;
   localize::ScanLeveler leveler_;
-  std::unique_ptr<Localizer> localizer_;
+  DelayedLocalizer localizer_;
   std::optional<RangePoseTracker> range_pose_;  ///< present for a robot with a UWB antenna
   localize::MapPoseTracker tracker_;
   SiteRegistrar registrar_;
@@ -120,10 +125,10 @@ class PosePipeline {
   std::optional<Pose3> T_body_gnss_;    ///< present for a robot with a GNSS antenna
   double max_mapping_tilt_rad_;         ///< tilt above which the SLAM method does not use scans
   ScanCounts scan_counts_;              ///< of all received scans
-  std::size_t num_scans_ = 0;           ///< scans that the localizer has processed
+  std::size_t num_scans_ = 0;           ///< scans that have corrected the pose
   std::vector<Time> mapped_;            ///< stamps of the scans while the robot maps
   std::vector<Pose2> T_map_mapped_;     ///< [scan] body pose at each of them, as estimated then
-  Pose2 T_odom_scan_;                   ///< body at the newest scan
+  Pose2 T_odom_scan_;                   ///< body at the newest of them
   Pose3 T_body_lidar_;                  ///< nominal
   std::optional<Pose2> T_site_docked_;  ///< surveyed pose of the docked body; none without a charging post
   std::vector<UwbAnchor> anchors_in_site_;

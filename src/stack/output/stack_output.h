@@ -27,6 +27,11 @@ class StackOutput {
                   .T_map_body = T_map_body,
                   .p_map_target = T_map_body.position()});
   }
+  /// Appends the messages and adds the computing time of another collector.
+  void take(StackOutput other) {
+    for (StackMessage& message : other.messages_) messages_.push_back(std::move(message));
+    clock_.add(other.clock_);
+  }
   /// Removes and returns the messages published since the last call.
   std::vector<StackMessage> take_messages() { return std::exchange(messages_, {}); }
 

@@ -53,6 +53,9 @@ struct StackSettings {
   std::string odometry_source = "legged";  ///< odometry source: legged, tracked or wheeled
   /// Localizer: automatic, slam, monte_carlo or slam_then_monte_carlo (stack/localization/make_localizer.h).
   std::string localizer = "automatic";
+  /// Time from the arrival of a scan until the pose that SLAM computes from it takes effect. Until then the pose
+  /// follows odometry.
+  double slam_delay_s = 0.0;
   /// Type of the mission: gas for the stations of a route; tunnel for saved goals, docking and instruments.
   std::string mission_type = "gas";
   /// Time from the start of odometry to the first scan, which defines the map's origin.
@@ -83,6 +86,7 @@ struct StackSettings {
   static void fields(Self& self, Visitor& visit) {
     visit("odometry_source", self.odometry_source, one_of({"legged", "tracked", "wheeled"}));
     visit("localizer", self.localizer, one_of({"automatic", "slam", "monte_carlo", "slam_then_monte_carlo"}));
+    visit("slam_delay_s", self.slam_delay_s, between(0.0, 10.0));
     visit("mission_type", self.mission_type, one_of({"gas", "tunnel"}));
     visit("odometry_settling_time_s", self.odometry_settling_time_s, between(0.0, 60.0));
     visit("odometry", self.odometry);

@@ -37,7 +37,7 @@ void expect_equal_logs(const std::filesystem::path& a, const std::filesystem::pa
 }
 
 struct Continued {
-  std::string file;
+  std::string name, file;
   std::vector<std::string> overrides;
   double snapshot_period_s;
   std::vector<double> at_s;
@@ -45,7 +45,7 @@ struct Continued {
 
 class Branches : public testing::TestWithParam<Continued> {};
 
-TEST_P(Branches, UnchangedTheyContinueWithTheSameMessagesAndSnapshotsChangeNothing) {
+TEST_P(Branches, UnchangedTheyContinueWithTheSameMessagesInTwoThreadsAndSnapshotsChangeNothing) {
   const Continued& row = GetParam();
   const TemporaryFolder folder("branches");
   const Scenario scenario = scenario_of(row.file, row.overrides);
@@ -55,17 +55,22 @@ TEST_P(Branches, UnchangedTheyContinueWithTheSameMessagesAndSnapshotsChangeNothi
   expect_equal_logs(plain, parent);
   for (const double at_s : row.at_s) {
     const auto branch = folder.path() / fmt::format("at_{}", at_s);
-    run(scenario, branch, {.branch = BranchOrigin{parent, from_seconds(at_s)}});
+    run(scenario, branch, {.branch = BranchOrigin{parent, from_seconds(at_s)}, .num_threads = 2});
     expect_equal_logs(plain, branch);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Worlds, Branches,
-    testing::Values(Continued{"street/scenarios/short.yaml", {"time_limit_s=6"}, 2.0, {2.0, 3.3, 5.9}},
-                    Continued{"tunnel/scenarios/navigate.yaml", {"time_limit_s=8"}, 3.0, {4.0, 7.0}},
-                    Continued{"substation/scenarios/short.yaml", {"time_limit_s=6"}, 3.0, {3.0, 5.1}}),
-    [](const auto& row) { return row.param.file.substr(0, row.param.file.find('/')); });
+    testing::Values(Continued{"street", "street/scenarios/short.yaml", {"time_limit_s=6"}, 2.0, {2.0, 3.3, 5.9}},
+                    Continued{"slam_delay",
+                              "street/scenarios/short.yaml",
+                              {"time_limit_s=6", "stack.slam_delay_s=0.15"},
+                              2.0,
+                              {2.0, 3.3, 5.9}},
+                    Continued{"tunnel", "tunnel/scenarios/navigate.yaml", {"time_limit_s=8"}, 3.0, {4.0, 7.0}},
+                    Continued{"substation", "substation/scenarios/short.yaml", {"time_limit_s=6"}, 3.0, {3.0, 5.1}}),
+    [](const auto& row) { return row.param.name; });
 
 TEST(Branch, AFaultAfterTheInstantGivesTheMessagesOfAWholeRunWithTheFault) {
   const TemporaryFolder folder("fault");
