@@ -67,7 +67,6 @@ class Search {
         T_center_body_(T_center_body),
         radius_m_(radius_m),
         T_map_goal_(T_map_goal),
-        to_goal_(costmap.cost(), T_map_goal.position(), settings.cost_weight),
         margin_m_(costmap.settings().route_margin_m),
         start_clearance_m_(clearance_m(T_map_start)) {}
 
@@ -78,6 +77,10 @@ class Search {
   bool is_free(const Pose2& T_map_center, double from_start_m) const {
     if (costmap_.is_clear(T_map_center * T_center_body_, margin_m_)) return true;
     return from_start_m < kNearStart_m && clearance_m(T_map_center) > start_clearance_m_ - 0.01;
+  }
+  /// Returns whether no maneuver from the start can end at the goal, for lack of clearance at the goal.
+  bool is_goal_blocked(const Pose2& T_map_start) const {
+    return !is_free(T_map_goal_, (T_map_goal_.position() - T_map_start.position()).norm());
   }
   std::optional<double> cost_of(const Pose2& T_map_from, double from_start_m, const Arc& arc, bool is_reverse) const;
   void add(const Pose2& T_map_center, bool is_reverse, double cost_m, double from_start_m, int parent, const Arc& arc);
@@ -90,7 +93,7 @@ class Search {
   Pose2 T_center_body_;
   double radius_m_;
   Pose2 T_map_goal_;
-  GoalDistance to_goal_;
+  std::optional<GoalDistance> to_goal_;
   double margin_m_, start_clearance_m_;
   std::vector<State> states_;
   std::unordered_map<std::uint64_t, int> known_;  ///< index of the best state with a key
@@ -115,7 +118,7 @@ std::optional<double> Search::cost_of(const Pose2& T_map_from, double from_start
 
 void Search::add(const Pose2& T_map_center, bool is_reverse, double cost_m, double from_start_m, int parent,
                  const Arc& arc) {
-  const double remaining_m = to_goal_.at(T_map_center.position());
+  const double remaining_m = to_goal_->at(T_map_center.position());
   if (!std::isfinite(remaining_m)) return;
   const auto [known, is_new] = known_.try_emplace(key_of(T_map_center, is_reverse), static_cast<int>(states_.size()));
   if (!is_new) {
@@ -173,7 +176,9 @@ void Search::shoot(int index) {
 }
 
 ManeuverResult Search::run(const Pose2& T_map_start, bool is_reversing) {
-  ManeuverResult result{.num_cells = to_goal_.num_expanded()};
+  if (is_goal_blocked(T_map_start)) return {.status = PlanStatus::kGoalBlocked};
+  to_goal_.emplace(costmap_.cost(), T_map_goal_.position(), settings_.cost_weight);
+  ManeuverResult result{.num_cells = to_goal_->num_expanded()};
   add(T_map_start, is_reversing, 0.0, 0.0, kNoParent, {});
   const int max_expanded = 1000 * settings_.max_expanded_thousands;
   while (!open_.empty() && result.num_expanded < max_expanded) {

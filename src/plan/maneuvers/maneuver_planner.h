@@ -31,7 +31,8 @@ class ManeuverPlanner {
   ManeuverPlanner(const ManeuverPlannerSettings& settings, const RobotDescription& robot);
 
   /// Plans from the pose of the body to a goal. `is_reversing`: direction in which the robot moves now. A goal without
-  /// heading (tolerance of pi) takes that of the shortest path.
+  /// heading (tolerance of pi) takes that of the shortest path. Returns kGoalBlocked without a search if the clearance
+  /// at the goal is at most the route margin. Within 2 m of the start, the clearance of the start suffices.
   ManeuverResult plan(const Costmap& costmap, const Pose2& T_map_body, bool is_reversing,
                       const NavigationGoal& goal) const;
 
