@@ -232,9 +232,9 @@ NavigationStatus Navigator::approach(Time now, const Pose2& T_map_body, Velocity
   return NavigationStatus::kDriving;
 }
 
-/// Stops until there is a first route.
+/// Stops until the search is completed. After a search without a route, the time of the next ones counts as blocked.
 NavigationStatus Navigator::wait_for_route(Time now) {
-  blocked_since_.reset();
+  if (!no_path_since_) blocked_since_.reset();
   progress_.restart_time(now);
   return NavigationStatus::kDriving;
 }

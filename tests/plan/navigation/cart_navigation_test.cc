@@ -102,6 +102,25 @@ TEST(CartNavigation, AGoalWithoutRoomForTheCartIsReported) {
   EXPECT_EQ(record.failure, NavigationFailure::kGoalBlocked);
 }
 
+// 1.6 m between the walls: the cart fits across, but it has no room to turn. Each search takes more than half a second
+// on the robot's computer, so that one is running most of the time.
+TEST(CartNavigation, AGoalThatEverySearchMissesIsAbortedAfterTheRecoveries) {
+  RoomWorld world;
+  world.add_box(-8.0, -0.8, 8.0, 0.8);
+  NavigatorSettings settings = cart_settings();
+  settings.planner_cells_per_s = 1e6;
+  settings.recovery.max_attempts = 3;
+  Navigator navigator(settings, make_cart(), {});
+  navigator.set_map(draw_map(world, -8.5, -1.5, 8.5, 1.5));
+  const NavigationGoal goal{
+      .T_map_body = {-4.0, -0.3, M_PI / 2.0}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
+  const DriveRecord record = drive(navigator, world, {4.0, 0.0, 0.0}, goal, 120.0, 0.1, make_cart());
+  EXPECT_EQ(record.end, NavigationStatus::kFailed);
+  EXPECT_EQ(record.failure, NavigationFailure::kNoRoute);
+  EXPECT_GE(record.recoveries.size(), 3U);
+  EXPECT_LT(record.time_s, 90.0);
+}
+
 TEST(CartNavigation, ARobotWithoutSteeredWheelsIsRefused) {
   EXPECT_THROW(Navigator(cart_settings(), make_tracked_robot(), {}), InputError);
 }
