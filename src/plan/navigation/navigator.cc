@@ -168,7 +168,7 @@ void Navigator::search_if_needed(Time now, const Pose2& T_map_body) {
     const bool is_off = path_deviation_m > settings_.max_path_deviation_m || follower_->has_ended();
     if (!is_blocked && !is_outdated && !is_off) return;
   }
-  if (!search_.may_begin(now)) return;
+  if (!search_.may_begin(now, T_map_body)) return;
   search_.begin(now, costmap_, T_map_body, *goal_, is_blocked, last_.vx_mps < 0.0);
 }
 

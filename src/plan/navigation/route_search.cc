@@ -1,15 +1,26 @@
 #include "plan/navigation/route_search.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
+
+#include "core/geometry/angles.h"
 
 namespace patrol::plan {
 namespace {
 
 constexpr Time kAtOnce = std::chrono::milliseconds(50);      // a search at most this long causes no delay
 constexpr Time kMinPeriod = std::chrono::milliseconds(500);  // searches without a route are the most expensive
+constexpr int kMaxDoublings = 3;                             // of the period, by failures: up to 4 s
+constexpr double kSameStart_m = 0.25;                        // starts closer than this, and
+constexpr double kSameStart_rad = 10.0 * kDegree;            // with less difference of the heading, are the same
 constexpr double kMargin_m = 5.0;                            // of the costmap around start and goal
 constexpr std::int64_t kCellsPerState = 100;                 // time of a state of a maneuver search, in cells
+
+bool is_same_start(const Pose2& a, const Pose2& b) {
+  return (a.position() - b.position()).norm() < kSameStart_m && std::abs(wrap_angle(a.yaw - b.yaw)) < kSameStart_rad;
+}
 
 }  // namespace
 
@@ -23,19 +34,25 @@ RouteSearch::RouteSearch(const NavigatorSettings& settings, std::uint64_t seed,
 void RouteSearch::reset() {
   running_.reset();
   begun_at_ = Time::min();
+  num_failed_ = 0;
 }
 
 bool RouteSearch::is_outdated(Time now) const {
   return has_new_map_ && now - begun_at_ >= from_seconds(replan_period_s_);
 }
 
-bool RouteSearch::may_begin(Time now) const {
-  return !running_ && (begun_at_ == Time::min() || now - begun_at_ >= kMinPeriod);
+bool RouteSearch::may_begin(Time now, const Pose2& T_map_start) const {
+  if (running_) return false;
+  if (begun_at_ == Time::min()) return true;
+  const int doublings = is_same_start(T_map_start, T_map_start_) ? std::min(num_failed_, kMaxDoublings) : 0;
+  return now - begun_at_ >= kMinPeriod * (1 << doublings);
 }
 
 void RouteSearch::begin(Time now, Costmap& costmap, const Pose2& T_map_start, const NavigationGoal& goal,
                         bool is_detour, bool is_reversing) {
+  if (!is_same_start(T_map_start, T_map_start_)) num_failed_ = 0;
   begun_at_ = now;
+  T_map_start_ = T_map_start;
   has_new_map_ = false;
   costmap.include(T_map_start.position(), kMargin_m);
   costmap.include(goal.T_map_body.position(), kMargin_m);
@@ -63,6 +80,8 @@ PlanResult RouteSearch::plan(Costmap& costmap, const Pose2& T_map_start, const N
 
 std::optional<RouteSearch::Result> RouteSearch::take(Time now) {
   if (!running_ || now < running_->ready) return std::nullopt;
+  const bool has_failed_slowly = running_->result.route.status != PlanStatus::kFound && running_->ready > begun_at_;
+  num_failed_ = has_failed_slowly ? num_failed_ + 1 : 0;
   return std::exchange(running_, std::nullopt)->result;
 }
 

@@ -32,8 +32,9 @@ class RouteSearch {
   void on_new_map() { has_new_map_ = true; }
   /// Whether the map has changed and the last search began `replan_period_s` ago.
   bool is_outdated(Time now) const;
-  /// Whether no search is running and the minimum period since the last one has passed.
-  bool may_begin(Time now) const;
+  /// Whether no search is running and the minimum period since the start of the last one has passed: 0.5 s. From the
+  /// same start, each successive search that takes longer than 50 ms and finds no route doubles it, up to 4 s.
+  bool may_begin(Time now, const Pose2& T_map_start) const;
   /// Begins a search; the costmap grows to contain start and goal. `is_reversing`: present direction of travel.
   void begin(Time now, Costmap& costmap, const Pose2& T_map_start, const NavigationGoal& goal, bool is_detour,
              bool is_reversing = false);
@@ -42,7 +43,7 @@ class RouteSearch {
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(running_, begun_at_, has_new_map_);
+    archive(running_, begun_at_, T_map_start_, num_failed_, has_new_map_);
   }
 
  private:
@@ -57,7 +58,9 @@ class RouteSearch {
   std::optional<ManeuverPlanner> maneuvers_;
   double planner_cells_per_s_, replan_period_s_;
   std::optional<Running> running_;
-  Time begun_at_ = Time::min();  ///< start of the last search
+  Time begun_at_ = Time::min();  ///< time at which the last search began
+  Pose2 T_map_start_;            ///< start of the route of the last search
+  int num_failed_ = 0;           ///< successive slow searches from this start without a route
   bool has_new_map_ = false;
 };
 
