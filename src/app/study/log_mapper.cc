@@ -7,7 +7,6 @@
 #include "io/logs/run_log.h"
 
 namespace patrol::app {
-
 namespace {
 
 stack::StackSettings without_delay(stack::StackSettings settings) {

@@ -155,11 +155,8 @@ class DepthCameraOnBody : public PeriodicSensor {
   DepthCameraOnBody& operator=(const DepthCameraOnBody&) = delete;
 
   void complete(SensorMessage& reading) override {
-    auto& image = std::get<DepthImage>(reading);
-    const Time stamp = image.stamp;
     worker_.wait(pending_.front().ticket);
-    image = std::move(*pending_.front().image);
-    image.stamp = stamp;
+    reading = std::move(*pending_.front().image);
     pending_.pop_front();
   }
 

@@ -162,8 +162,7 @@ void Lidar::finish_revolution() {
     scan.stamp = instant_of(next_beam_ - 1);
     scan.time_increment_s = 0.0;
   }
-  fired_.push_back(
-      {.ticket = submitted_, .revolution = revolution_, .stamp = has_rings() ? revolution_->cloud.stamp : scan.stamp});
+  fired_.push_back({.ticket = submitted_, .revolution = revolution_});
 }
 
 Lidar::Revolution& Lidar::measured(const FiredRevolution& fired) const {
@@ -338,10 +337,10 @@ class LidarOnBody : public Sensor {
     for (Lidar::FiredRevolution& fired : lidar_.take_fired()) {
       if (lidar_.has_rings()) {
         readings.emplace_back(std::in_place_type<PointCloud>);
-        std::get<PointCloud>(readings.back()).stamp = fired.stamp;
+        std::get<PointCloud>(readings.back()).stamp = fired.revolution->cloud.stamp;
       } else {
         readings.emplace_back(std::in_place_type<Scan>);
-        std::get<Scan>(readings.back()).stamp = fired.stamp;
+        std::get<Scan>(readings.back()).stamp = fired.revolution->scan.stamp;
       }
       fired_.push_back(std::move(fired));
     }
@@ -349,21 +348,14 @@ class LidarOnBody : public Sensor {
 
   void complete(SensorMessage& reading) override {
     Lidar::Revolution& measured = lidar_.measured(fired_.front());
-    if (auto* cloud = std::get_if<PointCloud>(&reading)) fill(*cloud, std::move(measured.cloud));
-    else fill(std::get<Scan>(reading), Scan{std::move(measured.scan)});
+    if (lidar_.has_rings()) reading = std::move(measured.cloud);
+    else reading = Scan{std::move(measured.scan)};
     fired_.pop_front();
   }
 
   void serialize_state(StateArchive& archive) override { archive(lidar_); }
 
  private:
-  /// The stamp has become that of the device's clock.
-  template <typename Message>
-  static void fill(Message& reading, Message measured) {
-    measured.stamp = reading.stamp;
-    reading = std::move(measured);
-  }
-
   Lidar lidar_;
   std::deque<Lidar::FiredRevolution> fired_;  ///< revolutions whose messages have to be completed, in order
 };

@@ -48,8 +48,7 @@ class Lidar {
   /// Revolution whose beams have been fired, and may still be measured by the worker.
   struct FiredRevolution {
     BackgroundWorker::Ticket ticket = 0;
-    std::shared_ptr<Revolution> revolution;
-    Time stamp{};
+    std::shared_ptr<Revolution> revolution;  ///< with the stamp of its message
   };
 
   /// Removes and returns the revolutions completed since the last call.

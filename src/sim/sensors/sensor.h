@@ -68,7 +68,8 @@ class Sensor {
   virtual void step(const SensorTick& tick, std::vector<SensorMessage>& readings) = 0;
 
   /// Waits for the parts of a reading that the worker computes, and fills them in. Called once for each reading, in
-  /// order, before the reading is changed or delivered.
+  /// order, before the reading is changed or delivered. The caller keeps the reading's stamp, which has become that of
+  /// the device's clock.
   virtual void complete(SensorMessage& /*reading*/) {}
 
   /// Passes a command of the stack; `now` and the pose are of the newest tick.

@@ -11,6 +11,13 @@ Pose3 body_pose(const mjData& data, int body) {
   return {Eigen::Vector3d(data.xpos + 3 * body), Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
 }
 
+/// Completes a reading, which keeps its stamp.
+void complete_reading(Sensor& sensor, SensorMessage& reading) {
+  const Time stamp = std::visit([](const auto& content) { return content.stamp; }, reading);
+  sensor.complete(reading);
+  std::visit([stamp](auto& content) { content.stamp = stamp; }, reading);
+}
+
 }  // namespace
 
 SensorSuite::SensorSuite(const SensorSuiteSettings& settings, const AsBuiltRobot& robot, const mjModel& physics,
@@ -90,7 +97,7 @@ void SensorSuite::deliver(Time ready, double latency_s, SensorMessage message, S
   const Time delay = channel.clock.transport_delay(channel.num_messages++);
   Time due = std::max(channel.last_due, ready + from_seconds(latency_s) + delay);
   channel.last_due = due;
-  if (incomplete && !faults_.reports().empty()) std::exchange(incomplete, nullptr)->complete(message);
+  if (incomplete && !faults_.reports().empty()) complete_reading(*std::exchange(incomplete, nullptr), message);
   if (faults_.apply(ready, due, message)) queue_.push(due, {std::move(message), incomplete});
 }
 
@@ -105,7 +112,7 @@ std::vector<SensorMessage> SensorSuite::take_due(Time now) {
 
 void SensorSuite::complete(QueuedMessage& queued) {
   if (!queued.incomplete) return;
-  std::exchange(queued.incomplete, nullptr)->complete(queued.message);
+  complete_reading(*std::exchange(queued.incomplete, nullptr), queued.message);
   faults_.remember(queued.message);
 }
 
