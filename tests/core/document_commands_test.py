@@ -9,6 +9,7 @@ Code fences of a document:
   sh long    takes a minute or more: its options are checked; --run-long runs the long fences of each document from top to bottom
   sh manual  needs what the test does not have (nothing built yet, a cluster, the whole machine): its options are checked
   yaml       part of a scenario: loads without an error
+  yaml ROBOT part of models/ROBOT/ROBOT.yaml: the robot loads with these values in place of its own
   yml        a file of another program: parses
 """
 import json
@@ -28,7 +29,8 @@ import yaml
 from documents_test import documents
 
 FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```", re.M | re.S)
-KNOWN = {"sh", "sh long", "sh manual", "yaml", "yml", "cpp", "python", "xml", "json", "cmake", ""}
+ROBOTS = ("wheeled",)  # whose files the documents show
+KNOWN = {"sh", "sh long", "sh manual", "yaml", *(f"yaml {robot}" for robot in ROBOTS), "yml", "cpp", "python", "xml", "json", "cmake", ""}
 
 
 def fences(document):
@@ -78,6 +80,13 @@ def copy_of(source, folder):
     for entry in (source / "worlds").iterdir():
         (folder / "worlds" / entry.name).symlink_to(entry)
     return folder
+
+
+def merged(base, changes):
+    """The mapping with the values of another; sections are merged key by key."""
+    if not isinstance(base, dict) or not isinstance(changes, dict):
+        return changes
+    return base | {key: merged(base.get(key), value) for key, value in changes.items()}
 
 
 def run_shell(text, folder):
@@ -137,6 +146,19 @@ class Commands(unittest.TestCase):
                     scenario.write_text(text)
                     done = subprocess.run([PATROL, "run", scenario, "--set", "time_limit_s=0.2", "--out", "out"], cwd=folder, capture_output=True, text=True)
                     self.assertNotIn(done.returncode, (2, 3), done.stderr)
+
+    def test_yaml_of_robots_is_valid(self):
+        for document in DOCUMENTS:
+            for info, text in fences(document):
+                for robot in ROBOTS:
+                    if info != f"yaml {robot}":
+                        continue
+                    with self.subTest(document=str(document.relative_to(SOURCE))), tempfile.TemporaryDirectory() as folder:
+                        file = copy_of(SOURCE, pathlib.Path(folder)) / f"models/{robot}/{robot}.yaml"
+                        file.write_text(yaml.safe_dump(merged(yaml.safe_load(file.read_text()), yaml.safe_load(text))))
+                        command = [PATROL, "run", "substation/patrol", "--robot", robot, "--set", "time_limit_s=0.2", "--out", "out"]
+                        done = subprocess.run(command, cwd=folder, env=dict(os.environ, PATROL_DATA=folder), capture_output=True, text=True)
+                        self.assertNotIn(done.returncode, (2, 3), done.stderr)
 
     def test_yaml_of_other_programs_parses(self):
         for document in DOCUMENTS:
