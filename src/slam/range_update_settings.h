@@ -19,7 +19,7 @@ struct RangeUpdateSettings {
   double gate_sigma = 3.0;
   /// Number of standard deviations beyond which a range that is longer than predicted is rejected as NLOS.
   double nlos_gate_sigma = 2.0;
-  UwbCalibration calibration = {};  ///< bias calibration of the radio; not a scenario setting
+  UwbCalibration calibration = {};  ///< bias of the radio; in a stack that of `uwb_filter`
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {

@@ -25,6 +25,13 @@ Eigen::Matrix3d map_covariance(const localize::RegistrationSettings& settings) {
       .asDiagonal();
 }
 
+/// Returns the settings of the mapper with the calibration of the radio, which all users of UWB ranges have in common.
+slam::MapperSettings mapper_settings(const StackSettings& settings) {
+  slam::MapperSettings mapper = settings.slam;
+  mapper.graph.ranges.calibration = mapper.rbpf.filter.ranges.calibration = settings.uwb_filter.calibration();
+  return mapper;
+}
+
 std::string method_of(const StackSettings& settings, const LocalizerStart& start) {
   if (settings.localizer != "automatic") return settings.localizer;
   if (start.map) return "monte_carlo";
@@ -50,7 +57,7 @@ std::unique_ptr<Localizer> make_localizer(const StackSettings& settings, const R
     return make_on_map(*start.map);
   }
   if (start.map) refuse("would replace the given map: remove the key map, or select monte_carlo");
-  auto slam = std::make_unique<SlamLocalizer>(slam::make_mapper(settings.slam, start.neighbor_model, seed),
+  auto slam = std::make_unique<SlamLocalizer>(slam::make_mapper(mapper_settings(settings), start.neighbor_model, seed),
                                               site_in_map.anchors, T_body_uwb, map_covariance(settings.registration));
   if (method == "slam") return slam;
   if (!start.has_mapping_drive) refuse("requires a teleoperated mapping drive: select slam");

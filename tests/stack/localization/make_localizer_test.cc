@@ -90,5 +90,48 @@ TEST(MakeLocalizer, RangesHaveTheBiasOfTheSettings) {
   EXPECT_GT(confidence.confidence, 0.9);
 }
 
+/// Error at the end of 20 m along a corridor without an end in sight, where odometry is 2 % too long. The ranges to an
+/// anchor ahead are exact for a radio whose bias grows with the distance by 10 %.
+double corridor_error_m(const UwbCalibration& of_settings) {
+  const UwbCalibration radio{.distance_m = {0.0, 30.0}, .bias_m = {0.0, 3.0}};
+  StackSettings settings;
+  slam::RangeUpdateSettings& ranges = settings.slam.graph.ranges;
+  ranges.range_std_m = 0.02;
+  ranges.common_std_m = ranges.anchor_delay_std_m = 0.01;
+  settings.uwb_filter.bias_distance_m = of_settings.distance_m;
+  settings.uwb_filter.bias_m = of_settings.bias_m;
+  RobotDescription robot = test::make_quadruped();
+  const Pose3 T_body_uwb{{0.1, 0.0, 0.1}, Eigen::Quaterniond::Identity()};
+  robot.T_body_sensor["uwb"] = T_body_uwb;
+  Route site;
+  site.anchors = {{.number = 4, .p_m = {26.0, 1.0, 2.0}}};
+  const auto localizer = make_localizer(settings, robot, site, {}, 1);
+  localizer->set_initial_pose({}, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal());
+  test::RoomWorld corridor;
+  corridor.add_wall(-100.0, -2.0, 100.0, -2.0).add_wall(-100.0, 2.0, 100.0, 2.0);
+  StackOutput output;
+  PoseEstimate pose;
+  for (int i = 0; i <= 200; ++i) {
+    const Pose2 truth{0.1 * i, 0.0, 0.0}, odometry{0.102 * i, 0.0, 0.0};
+    const Eigen::Vector3d antenna =
+        uwb_antenna_in_level(Eigen::Quaterniond::Identity(), T_body_uwb, robot.body_height_m());
+    localizer->add({.range = {.stamp = from_seconds(0.1 * i),
+                              .anchor = 4,
+                              .range_m = predict_uwb_range(site.anchors[0], truth, antenna, radio).range_m},
+                    .T_odom_body = {{odometry.x, odometry.y, 0.0}, Eigen::Quaterniond::Identity()},
+                    .height_m = robot.body_height_m()});
+    LevelScan scan = corridor.scan(truth, {});
+    scan.stamp = from_seconds(0.1 * i);
+    pose = localizer->update(scan, odometry, output);
+  }
+  return std::abs(pose.T_map_body.x - 20.0);
+}
+
+// Ranges without the correction are rejected, and the error is that of odometry.
+TEST(MakeLocalizer, SlamHalvesTheErrorOfOdometryInACorridorByRangesWithTheBiasOfTheSettings) {
+  EXPECT_LT(corridor_error_m({.distance_m = {0.0, 30.0}, .bias_m = {0.0, 3.0}}), 0.24);
+  EXPECT_NEAR(corridor_error_m({}), 0.4, 0.01);
+}
+
 }  // namespace
 }  // namespace patrol::stack::make_localizer_test
