@@ -227,7 +227,12 @@ class BadInput(unittest.TestCase):
         self.refuse("fault-matrix", "absent.yaml", "--out", self.out, says=["absent.yaml"])
 
     def test_faults_before_the_start(self):
-        self.refuse_variants("fault-matrix", "--start-s", -1, says=["start_s", "-1"])
+        self.refuse_variants("fault-matrix", "--start-s", -1, says=["--start-s", "-1"])
+        self.refuse_variants("fault-matrix", "--start-s", 5000, says=["--start-s 5000", "time_limit_s"])
+        self.refuse_variants("fault-matrix", "--duration-s", 0, says=["--duration-s"])
+        self.refuse_variants("fault-matrix", "--max-error-m", -1, says=["--max-error-m"])
+        self.refuse_variants("fault-matrix", "--min-map-coverage", 7, says=["--min-map-coverage"])
+        self.refuse_variants("fault-matrix", "--max-lost-s", -5, says=["--max-lost-s"])
 
     def test_budget_of_one_seed(self):
         self.refuse_variants("error-budget", "--seeds", 1, says=["--seeds", "two"])

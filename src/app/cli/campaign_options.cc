@@ -1,4 +1,5 @@
 #include "app/cli/command_options.h"
+#include "app/cli/number_checks.h"
 
 namespace patrol::app {
 namespace {
@@ -68,13 +69,18 @@ void add_fault_matrix(CLI::App& app, Call& call) {
   command->alias("faults");
   add_variants(*command, faults, "Metric to compare with the fault-free run (repeatable)");
   command->add_option("--fault", faults.faults, "Only this fault, e.g. 'lidar: dropout' (repeatable)")->take_all();
-  command->add_option("--start-s", faults.start_s, "Fault onset, s")->capture_default_str();
-  command->add_option("--duration-s", faults.duration_s, "Fault duration, s")->capture_default_str();
+  command->add_option("--start-s", faults.start_s, "Fault onset, s")->check(not_negative())->capture_default_str();
+  command->add_option("--duration-s", faults.duration_s, "Fault duration, s")
+      ->check(above_zero())
+      ->capture_default_str();
   command->add_option("--max-error-m", faults.max_error_m, "Largest position error of a survived run, m")
+      ->check(above_zero())
       ->capture_default_str();
   command->add_option("--min-map-coverage", faults.min_map_coverage, "Smallest map coverage of a survived run")
+      ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--max-lost-s", faults.max_lost_s, "Longest time reported lost on a given map, s")
+      ->check(not_negative())
       ->capture_default_str();
   add_json(*command, faults.form);
   command->callback([&] { call.chosen = [&] { return fault_matrix_command(call.fault_matrix); }; });

@@ -10,6 +10,13 @@ namespace patrol::app {
 
 inline std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
 
+/// Name of a command and its aliases.
+inline std::vector<std::string> names_of(const CLI::App& command) {
+  std::vector<std::string> names = command.get_aliases();
+  names.insert(names.begin(), command.get_name());
+  return names;
+}
+
 inline std::vector<const CLI::Option*> arguments_of(const CLI::App& command, bool are_options) {
   std::vector<const CLI::Option*> arguments = command.get_options({});
   std::erase_if(arguments, [&](const CLI::Option* argument) { return argument->nonpositional() != are_options; });

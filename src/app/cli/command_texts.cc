@@ -47,10 +47,11 @@ std::string bash_completion(const CLI::App& app) {
   std::vector<std::string> names;
   std::string cases;
   for (const CLI::App* command : commands_of(app)) {
-    names.push_back(command->get_name());
+    const std::vector<std::string> all = names_of(*command);
+    names.insert(names.end(), all.begin(), all.end());
     std::vector<std::string> options;
     for (const CLI::Option* option : options_of(*command)) options.push_back(long_name(*option));
-    cases += fmt::format("    {}) options='{}' ;;\n", command->get_name(), join(options, " "));
+    cases += fmt::format("    {}) options='{}' ;;\n", join(all, "|"), join(options, " "));
   }
   return fmt::format(
       "# Completion of patrol for bash.\n"
@@ -74,8 +75,10 @@ std::string bash_completion(const CLI::App& app) {
 std::string zsh_completion(const CLI::App& app) {
   std::string names, cases;
   for (const CLI::App* command : commands_of(app)) {
-    names += fmt::format("    '{}:{}'\n", command->get_name(), in_quotes(escaped(command->get_description(), ":")));
-    cases += fmt::format("    {}) _arguments '*:file:_files'", command->get_name());
+    const std::vector<std::string> all = names_of(*command);
+    for (const std::string& name : all)
+      names += fmt::format("    '{}:{}'\n", name, in_quotes(escaped(command->get_description(), ":")));
+    cases += fmt::format("    {}) _arguments '*:file:_files'", join(all, "|"));
     for (const CLI::Option* option : options_of(*command)) {
       cases += fmt::format(" \\\n      '*{}[{}]{}'", long_name(*option),
                            in_quotes(escaped(option->get_description(), "[]:")),
@@ -112,7 +115,9 @@ std::string man_page(const CLI::App& app, const std::string& version) {
       const std::string name = to_roff(upper(positional->get_name()));
       text += positional->get_required() ? " " + name : fmt::format(" [{}]", name);
     }
-    text += fmt::format("\n{}.\n", to_roff(command->get_description()));
+    const std::string aliases = join(command->get_aliases(), ", ");
+    text += fmt::format("\n{}.{}\n", to_roff(command->get_description()),
+                        aliases.empty() ? "" : fmt::format(" Alias: {}.", to_roff(aliases)));
     for (const CLI::Option* positional : positionals_of(*command)) {
       text += fmt::format(".TP\n\\fI{}\\fR\n{}\n", to_roff(upper(positional->get_name())),
                           to_roff(positional->get_description()));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "app/common/print_result.h"
 #include "app/common/text_style.h"
 #include "app/report/test_page.h"
+#include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
 #include "report/page.h"
@@ -65,6 +67,10 @@ ExitCode test_command(const TestOptions& options) {
                options.scenarios.front().string());
     return ExitCode::kNothingExecuted;
   }
+  if (!seeds.is_empty() &&
+      std::ranges::none_of(tested, [&](const auto& one) { return seeds.seed_of(one.file).has_value(); }))
+    throw InputError(fmt::format("{}: names none of the scenarios: a key must be the end of the path of a scenario",
+                                 options.seed_table.string()));
   const OutputLock lock = begin_output(out, kTest);
   save_test_junit(out / "junit.xml", tested);
 

@@ -128,10 +128,10 @@ std::vector<CheckedExpectation> check_expectations(const io::Expectations& expec
     if (const std::optional<double> value = io::metric_at(metrics, metric)) {
       check.is_measured = true;
       check.is_met = *value >= expectation.min && *value <= expectation.max;
-      // Without events, a mission counts as not completed.
+      // Without events, a mission counts as not completed, which is not a measurement.
       const bool is_unknown = metric == "mission.completed" && *value < 0.5 && check.got != kNotMeasured;
-      if (!is_unknown)
-        check.got = expectation.is_boolean ? (*value > 0.5 ? "true" : "false") : fmt::format("{:.4g}", *value);
+      if (is_unknown) check.is_met = false;
+      else check.got = expectation.is_boolean ? (*value > 0.5 ? "true" : "false") : fmt::format("{:.4g}", *value);
     }
     checks.push_back(check);
   }

@@ -20,9 +20,9 @@ def printed(text):
 
 @functools.cache
 def commands():
-    """{command: its options} by --help."""
+    """{command or alias: its options} by --help."""
     listed = subprocess.run([PATROL, "--help"], capture_output=True, text=True, check=True).stdout.split("Subcommands:")[1]
-    names = re.findall(r"^  ([a-z-]+)[ ,]", listed, re.MULTILINE)
+    names = [name for line in re.findall(r"^  ([a-z-]+(?:, [a-z-]+)*)", listed, re.MULTILINE) for name in line.split(", ")]
     helps = {name: subprocess.run([PATROL, name, "--help"], capture_output=True, text=True, check=True).stdout for name in names}
     return {name: set(re.findall(r"(?<![\w-])(--[a-z0-9-]+)", "".join(line[:30] for line in text.splitlines(True)))) for name, text in helps.items()}
 
@@ -54,7 +54,8 @@ class Texts(unittest.TestCase):
     def test_the_manual_page_has_every_command_and_option_and_no_warning(self):
         page = printed("man-page")
         for command, options in commands().items():
-            self.assertIn(".SS patrol " + command.replace("-", "\\-"), page)
+            name = command.replace("-", "\\-")
+            self.assertTrue(f".SS patrol {name}" in page or f" Alias: {name}." in page, command)
             for option in options:
                 self.assertIn(option.replace("-", "\\-"), page)
         if shutil.which("groff"):

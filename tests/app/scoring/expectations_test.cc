@@ -133,6 +133,7 @@ TEST(Expectations, AMetricOfATopicThatTheStackDoesNotPublishSaysSo) {
   EXPECT_EQ(got("odometry.ate_rmse_m"), "not published: /odom");
   EXPECT_EQ(got("inspection.leaks_found"), "not published: /events");
   EXPECT_EQ(got("mission.completed"), "not published: /events");
+  EXPECT_FALSE(check_expectations({{"mission.completed", boolean(false)}}, metrics).front().is_met);
   EXPECT_EQ(got("localization.lost_s"), "not published: /localization_confidence");
   EXPECT_EQ(got("range_pose.ate_rmse_m"), "not published: /uwb_odometry/pose");
   EXPECT_EQ(got("pose.coverage"), "not measured");  // published, but not enough of it

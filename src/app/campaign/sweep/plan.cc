@@ -129,6 +129,9 @@ SweepManifest plan_fault_matrix(const FaultMatrixOptions& options) {
   manifest.paths = {"faults"};
   manifest.variants.push_back({.name = "no fault", .overrides = {"faults=[]"}});
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
+  if (options.start_s >= scenario.time_limit_s)
+    throw InputError(fmt::format("--start-s {}: must be below time_limit_s = {} of the scenario", options.start_s,
+                                 scenario.time_limit_s));
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
   for (std::string& override : survival_overrides(scenario, {.max_error_m = options.max_error_m,
                                                             .min_map_coverage = options.min_map_coverage,

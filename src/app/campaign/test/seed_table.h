@@ -19,6 +19,9 @@ class SeedTable {
   /// Seed of a scenario; none if the table does not have it. The longest key that matches counts.
   std::optional<std::uint64_t> seed_of(const std::filesystem::path& scenario) const;
 
+  /// Whether the table has no seeds.
+  bool is_empty() const { return rows_.empty(); }
+
  private:
   struct Row {
     std::string key;

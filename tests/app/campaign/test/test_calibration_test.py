@@ -151,6 +151,16 @@ class Seeds(unittest.TestCase):
         self.assertIn('name="seed" value="1"', seeds["a/scenarios/home"])
         self.assertIn('name="seed" value="7"', seeds["b/scenarios/home"])
 
+    def test_a_table_without_any_of_the_scenarios_is_refused(self):
+        standing_still(self.path, "expect:\n  mission.completed: true\n")
+        table = self.path / "seeds.json"
+        table.write_text(json.dumps({"gone.yaml": 8}))
+        done = subprocess.run([PATROL, "test", self.path, "--seed-table", table, "--out", self.path / "out"], capture_output=True,
+                              text=True, cwd=SOURCE)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stderr, f"patrol: {table}: names none of the scenarios: a key must be the end of the path of a scenario\n")
+        self.assertFalse((self.path / "out").exists())
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], "-v"])
