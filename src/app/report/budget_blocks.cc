@@ -20,9 +20,8 @@ class Waterfall {
         fmt::format("{:.3g} {}", unit_.factor * value.center, unit_.name));
   }
   /// Adds a bar down from the end of the previous step.
-  void step(const std::string& label, const score::Interval& contribution) {
+  void step(const std::string& label, const score::Interval& contribution, Tone tone) {
     const double next = level_ - contribution.center;
-    const Tone tone = contribution.contains(0.0) ? Tone::kFaint : contribution.center > 0.0 ? Tone::kBad : Tone::kGood;
     add(label, level_, next, {.center = next, .low = level_ - contribution.high, .high = level_ - contribution.low},
         tone, fmt::format("{:+.3g} {}", -unit_.factor * contribution.center, unit_.name));
     level_ = next;
@@ -48,6 +47,11 @@ class Waterfall {
 
 bool is_whole(const Budget& budget) { return budget.baseline && budget.ideal && budget.sum && budget.interaction; }
 
+Tone tone_of(const Contribution& contribution) {
+  if (!contribution.is_significant()) return Tone::kFaint;
+  return contribution.value->center > 0.0 ? Tone::kBad : Tone::kGood;
+}
+
 std::string with_interval(const score::Interval& value, const report::Unit& unit) {
   return fmt::format("{:+.3g} [{:+.3g}, {:+.3g}]", unit.factor * value.center, unit.factor * value.low,
                      unit.factor * value.high);
@@ -66,33 +70,36 @@ std::vector<report::Block> budget_blocks(const Budget& budget) {
       .rows = {}};
   for (const Contribution& contribution : budget.contributions) {
     if (!contribution.value) continue;
-    waterfall.step(contribution.name, *contribution.value);
-    const bool is_clear = !contribution.value->contains(0.0);
+    waterfall.step(contribution.name, *contribution.value, tone_of(contribution));
     table.rows.push_back({{contribution.name},
                           {std::to_string(contribution.num_pairs)},
                           {with_interval(*contribution.value, unit)},
-                          {is_clear ? "" : "interval contains zero", Tone::kFaint}});
+                          {contribution.is_significant() ? "" : "not significant", Tone::kFaint}});
   }
-  waterfall.step("interaction", *budget.interaction);
+  waterfall.step("interaction", *budget.interaction, Tone::kPlain);
   waterfall.total("all ideal", *budget.ideal);
   table.rows.push_back({{"sum of the contributions"}, {""}, {with_interval(*budget.sum, unit)}, {""}});
   table.rows.push_back({{"interaction"}, {""}, {with_interval(*budget.interaction, unit)}, {""}});
   return {std::move(waterfall).chart(), table,
-          report::TextBlock{"Contribution: baseline minus the metric without this error source, paired by seed, with "
-                            "95 % interval. Interaction: "
-                            "effect of removing all minus the sum of the contributions."}};
+          report::TextBlock{fmt::format(
+              "Contribution: baseline minus the metric without this error source, paired by seed, with 95 % interval. "
+              "Not significant: p-value above 5 % after Holm's correction for {} error sources. Interaction: effect of "
+              "removing all minus the sum of the contributions.",
+              budget.contributions.size())}};
 }
 
 std::string budget_finding(const Budget& budget) {
   if (!is_whole(budget) || budget.contributions.empty() || !budget.contributions.front().value)
     return fmt::format("{}: too few runs with this metric.", budget.metric);
   const report::Unit unit = report::unit_of(budget.metric);
-  const Contribution& first = budget.contributions.front();
   const std::string whole = fmt::format("{:.3g} {}", unit.factor * budget.baseline->center, unit.name);
-  if (first.value->contains(0.0))
-    return fmt::format("{}: no error source contributes significantly to {} (95 %).", budget.metric, whole);
-  return fmt::format("{}: {}: {} contributes {:.3g} {}.", budget.metric, whole, first.name,
-                     unit.factor * first.value->center, unit.name);
+  const Contribution* first = first_significant(budget);
+  if (first == nullptr) {
+    return fmt::format("{}: no error source contributes significantly to {} (5 %, Holm's correction).", budget.metric,
+                       whole);
+  }
+  return fmt::format("{}: {}: {} contributes {:.3g} {}.", budget.metric, whole, first->name,
+                     unit.factor * first->value->center, unit.name);
 }
 
 }  // namespace patrol::app

@@ -53,10 +53,8 @@ report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
 report::VerdictBlock budget_verdict(const std::vector<Budget>& budgets, const SweepRows& rows,
                                     const SweepProgress& progress) {
   report::VerdictBlock verdict;
-  const bool is_significant = !budgets.empty() && !budgets.front().contributions.empty() &&
-                              budgets.front().contributions.front().value &&
-                              !budgets.front().contributions.front().value->contains(0.0);
-  verdict.word = is_significant ? budgets.front().contributions.front().name : "No significant contribution";
+  const Contribution* first = budgets.empty() ? nullptr : first_significant(budgets.front());
+  verdict.word = first != nullptr ? first->name : "No significant contribution";
   for (const Budget& budget : budgets) verdict.reason += budget_finding(budget) + " ";
   verdict.reason += not_done(rows, progress);
   return verdict;

@@ -107,6 +107,30 @@ TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   EXPECT_NEAR(spans[2].to, spans[3].to, 1e-9);
 }
 
+// Differences 1, 2 and 1.5 cm: p = 0.035. Of two sources, Holm's correction doubles it.
+TEST(SweepPage, TheVerdictOfABudgetNamesNoSourceWhoseCorrectedPValueIsAboveFivePercent) {
+  SmallSweep budget(0.0, SweepKind::kBudget);
+  budget.manifest.variants.clear();
+  for (const char* name : {"baseline", "lidar: range noise", "slip", "all ideal"})
+    budget.manifest.variants.push_back({.name = name, .overrides = {}});
+  budget.manifest.seeds = {1, 2, 3};
+  budget.manifest.runs.clear();
+  budget.rows.clear();
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const double difference_m = std::array{0.01, 0.02, 0.015}[seed - 1];
+    for (std::size_t variant = 0; variant < 4; ++variant) {
+      const double error_m = std::array{0.10, 0.10 - difference_m, 0.10, 0.08}[variant];
+      budget.manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
+      budget.rows.push_back(RunVerdict{.end = RunStatus::kDone,
+                                       .message = "",
+                                       .metrics = {{"pose", {{"ate_rmse_m", error_m}}}},
+                                       .checks = {},
+                                       .events = {}});
+    }
+  }
+  EXPECT_EQ(budget.verdict().word, "No significant contribution");
+}
+
 TEST(SweepPage, VariantsAreNamedByTheLastPartOfTheirKeysUnlessTwoAreAlike) {
   SweepManifest manifest;
   manifest.paths = {"sensors.lidar.range_noise_std_m", "stack.slam.rbpf.particles"};

@@ -69,6 +69,11 @@ std::string line(const std::string& name, const std::optional<score::Interval>& 
 
 }  // namespace
 
+const Contribution* first_significant(const Budget& budget) {
+  const auto first = std::ranges::find_if(budget.contributions, &Contribution::is_significant);
+  return first == budget.contributions.end() ? nullptr : &*first;
+}
+
 std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows& rows) {
   std::vector<Budget> budgets;
   for (const std::string& metric : manifest.metrics) budgets.push_back(make_budget(manifest, rows, metric));

@@ -32,6 +32,9 @@ struct Budget {
   std::optional<score::Interval> interaction;  ///< effect of removing all together minus the sum of the contributions
 };
 
+/// First significant contribution in the order of the budget; null if none is significant.
+const Contribution* first_significant(const Budget& budget);
+
 /// Error budgets of all metrics of the manifest.
 std::vector<Budget> make_budgets(const SweepManifest& manifest, const SweepRows& rows);
 Budget make_budget(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric);
