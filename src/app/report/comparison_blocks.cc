@@ -14,9 +14,9 @@ namespace {
 
 using report::Tone;
 
-report::TableCell verdict_cell(const VariantMetric& entry) {
-  const bool is_difference = entry.verdict == "lower" || entry.verdict == "higher";
-  return {entry.verdict, is_difference ? Tone::kPlain : Tone::kFaint};
+/// Tone of a difference by its verdict, which is corrected for the number of variants.
+Tone tone_of(const VariantMetric& entry) {
+  return entry.verdict == "lower" || entry.verdict == "higher" ? Tone::kPlain : Tone::kFaint;
 }
 
 std::string interval_text(const std::optional<score::Interval>& interval, const report::Unit& unit, const char* sign) {
@@ -77,14 +77,14 @@ std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, cons
            .from = 0.0,
            .to = unit.factor * entry.difference->center,
            .interval = std::pair(unit.factor * entry.difference->low, unit.factor * entry.difference->high),
-           .tone = entry.difference->contains(0.0) ? Tone::kFaint : Tone::kPlain,
+           .tone = tone_of(entry),
            .text = entry.verdict});
     }
     table.rows.push_back({{name},
                           {std::to_string(entry.num_runs)},
                           {interval_text(entry.interval, unit, "")},
                           {variant == 0 ? "" : interval_text(entry.difference, unit, "+")},
-                          verdict_cell(entry)});
+                          {entry.verdict, tone_of(entry)}});
   }
   std::vector<report::Block> blocks;
   if (!boxes.boxes.empty()) blocks.emplace_back(boxes);

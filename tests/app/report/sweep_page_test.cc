@@ -52,6 +52,31 @@ TEST(SweepPage, ADifferenceIsSaidInTheVerdictWithItsDirection) {
 
 TEST(SweepPage, AnIntervalThatHoldsZeroIsNoDifference) { EXPECT_EQ(SmallSweep(0.0).verdict().word, "No difference"); }
 
+// Differences 1, 2 and 1.5 cm: p = 0.035. Of two variants, Holm's correction doubles it.
+TEST(SweepPage, ADifferenceIsPaintedByItsVerdict) {
+  SmallSweep sweep(0.0);
+  sweep.manifest.variants.push_back({.name = "third", .overrides = {}});
+  sweep.manifest.seeds = {1, 2, 3};
+  sweep.manifest.runs.clear();
+  sweep.rows.clear();
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    for (std::size_t variant = 0; variant < 3; ++variant) {
+      sweep.manifest.runs.push_back({.variant = variant, .seed = seed, .overrides = {}, .hash = ""});
+      const double error_m = 0.1 + (variant == 1 ? std::array{0.01, 0.02, 0.015}[seed - 1] : 0.0);
+      sweep.rows.push_back(RunVerdict{.end = RunStatus::kDone,
+                                      .message = "",
+                                      .metrics = {{"pose", {{"ate_rmse_m", error_m}}}},
+                                      .checks = {},
+                                      .events = {}});
+    }
+  }
+  const report::Page page = sweep.page();
+  const report::Span& span = std::get<report::WaterfallChart>(page.sections[1].blocks[1]).spans[0];
+  EXPECT_GT(span.interval->first, 0.0);
+  EXPECT_EQ(span.text, "no difference");
+  EXPECT_EQ(span.tone, report::Tone::kFaint);
+}
+
 TEST(SweepPage, RunsThatFailedAreSaidAndStandFirst) {
   SmallSweep sweep(0.0);
   sweep.rows[7]->end = RunStatus::kCrashed;
