@@ -12,18 +12,20 @@ using report::Tone;
 /// Steps of a waterfall chart, in the metric's display unit.
 class Waterfall {
  public:
-  explicit Waterfall(const Budget& budget) : unit_(report::unit_of(budget.metric)), level_(budget.baseline->center) {}
+  explicit Waterfall(const Budget& budget) : unit_(report::unit_of(budget.metric)), level_(budget.baseline->center) {
+    chart_.caption = "From the baseline to all ideal: removing a source lowers the metric by its contribution";
+  }
 
   /// Adds a bar from zero.
   void total(const std::string& label, const score::Interval& value) {
     add(label, 0.0, value.center, value, Tone::kPlain,
         fmt::format("{:.3g} {}", unit_.factor * value.center, unit_.name));
   }
-  /// Adds a bar down from the end of the previous step.
+  /// Adds a bar down from the end of the previous step. Its text is the contribution, as in the table.
   void step(const std::string& label, const score::Interval& contribution, Tone tone) {
     const double next = level_ - contribution.center;
     add(label, level_, next, {.center = next, .low = level_ - contribution.high, .high = level_ - contribution.low},
-        tone, fmt::format("{:+.3g} {}", -unit_.factor * contribution.center, unit_.name));
+        tone, fmt::format("{:+.3g} {}", unit_.factor * contribution.center, unit_.name));
     level_ = next;
   }
   report::WaterfallChart chart() && { return std::move(chart_); }

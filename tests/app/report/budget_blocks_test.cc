@@ -33,6 +33,10 @@ Budget budget_of(const std::vector<Contribution>& contributions) {
   return budget;
 }
 
+report::WaterfallChart chart_of(const Budget& budget) {
+  return std::get<report::WaterfallChart>(budget_blocks(budget)[0]);
+}
+
 TEST(BudgetBlocks, MarkContributionsByTheirCorrectedPValue) {
   const Budget budget = budget_of({contribution("slip", 0.02, kSmallP), contribution("noise", 0.01, kLargeP)});
   const std::vector<report::Block> blocks = budget_blocks(budget);
@@ -43,6 +47,17 @@ TEST(BudgetBlocks, MarkContributionsByTheirCorrectedPValue) {
   EXPECT_EQ(spans[1].tone, Tone::kBad);
   EXPECT_EQ(spans[2].tone, Tone::kFaint);
   EXPECT_THAT(std::get<report::TextBlock>(blocks[2]).text, HasSubstr("Holm's correction for 2 error sources"));
+}
+
+TEST(BudgetBlocks, TheChartLabelsContributionsWithTheSignOfTheTable) {
+  const Budget budget = budget_of({contribution("slip", 0.02, kSmallP), contribution("noise", -0.01, kSmallP)});
+  const report::WaterfallChart chart = chart_of(budget);
+  EXPECT_EQ(chart.spans[1].text, "+2 cm");
+  EXPECT_NEAR(chart.spans[1].to, chart.spans[1].from - 2.0, 1e-9);
+  EXPECT_EQ(chart.spans[2].text, "-1 cm");
+  EXPECT_NEAR(chart.spans[2].to, chart.spans[2].from + 1.0, 1e-9);
+  EXPECT_EQ(chart.spans[3].text, "+0.2 cm") << "interaction";
+  EXPECT_THAT(chart.caption, HasSubstr("lowers the metric by its contribution"));
 }
 
 TEST(BudgetBlocks, AFindingNamesTheFirstSignificantContribution) {
