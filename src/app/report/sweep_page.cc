@@ -76,13 +76,14 @@ Tone tone_of(FaultOutcome outcome) {
 report::TableBlock fault_table(const SweepManifest& manifest, const std::vector<FaultRow>& rows) {
   report::TableBlock table{
       .caption = "",
-      .columns = {{"fault"}, {"seed", true}, {"triggered"}, {"outcome"}, {"detected", true}, {"end"}},
+      .columns = {{"fault"}, {"seed", true}, {"triggered"}, {"effect"}, {"outcome"}, {"detected", true}, {"end"}},
       .rows = {}};
   for (const std::string& metric : manifest.metrics) table.columns.push_back({metric, true});
   for (const FaultRow& row : rows) {
     std::vector<report::TableCell> cells = {{row.name},
                                             {std::to_string(row.seed)},
                                             {trigger_text(row), row.is_not_triggered() ? Tone::kWarning : Tone::kPlain},
+                                            {effect_text(row), row.is_without_effect() ? Tone::kWarning : Tone::kPlain},
                                             {std::string(text_of(row.outcome)), tone_of(row.outcome)},
                                             {row.num_detected ? fmt::format("{:.0f}", *row.num_detected) : "–"},
                                             {row.end}};

@@ -104,6 +104,22 @@ TEST(SweepPage, AFaultMatrixSaysHowManyWereUnsafe) {
   EXPECT_THAT(faults.verdict().reason, HasSubstr("1 UNSAFE"));
 }
 
+TEST(SweepPage, AFaultWithoutEffectIsMarkedInItsRow) {
+  SmallSweep faults(0.0, SweepKind::kFaults);
+  faults.manifest.variants = {{.name = "no fault", .overrides = {}}, {.name = "imu: drift", .overrides = {}}};
+  for (std::size_t i = 1; i < faults.rows.size(); i += 2) {
+    faults.rows[i]->metrics = faults.rows[i - 1]->metrics;
+    faults.rows[i]->events = {{.name = "fault imu drift at 12 s", .was_triggered = true}};
+  }
+  faults.rows[3]->metrics["pose"]["ate_rmse_m"] = 0.3;
+  const report::Page page = faults.page();
+  const auto& table = std::get<report::TableBlock>(page.sections[1].blocks[0]);
+  EXPECT_EQ(table.columns[3].title, "effect");
+  EXPECT_EQ(table.rows[0][3].text, "");
+  EXPECT_EQ(table.rows[1][3].text, "no effect");
+  EXPECT_EQ(table.rows[3][3].text, "effect");
+}
+
 TEST(SweepPage, ABudgetNamesTheOwnerAndItsWaterfallEndsAtTheIdeal) {
   SmallSweep budget(0.0, SweepKind::kBudget);
   budget.manifest.variants = {{.name = "baseline", .overrides = {}},

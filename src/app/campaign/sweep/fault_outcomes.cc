@@ -71,6 +71,11 @@ std::string trigger_text(const FaultRow& row) {
   return *row.was_triggered ? "triggered" : "not triggered";
 }
 
+std::string effect_text(const FaultRow& row) {
+  if (row.fault.kind.empty() || !row.was_triggered.value_or(false)) return "";
+  return row.has_effect ? "effect" : "no effect";
+}
+
 std::string faults_summary(const std::vector<FaultRow>& rows) {
   std::map<FaultOutcome, int> counts;
   for (const FaultRow& row : rows) ++counts[row.outcome];

@@ -57,6 +57,9 @@ std::vector<FaultRow> fault_rows(const SweepManifest& manifest, const SweepRows&
 /// "triggered" or "not triggered"; empty for the run without a fault.
 std::string trigger_text(const FaultRow& row);
 
+/// "effect" or "no effect"; empty for the run without a fault and for faults that were not triggered.
+std::string effect_text(const FaultRow& row);
+
 /// Sentence with the number of runs by outcome.
 std::string faults_summary(const std::vector<FaultRow>& rows);
 

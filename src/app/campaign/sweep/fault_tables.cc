@@ -72,8 +72,9 @@ io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
   const auto cell = [](const std::optional<double>& value) {
     return value ? io::TableValue{*value} : io::TableValue{};
   };
-  io::Table table{
-      .name = "faults", .columns = {"fault", "seed", "triggered", "outcome", "detected", "end", "message"}, .rows = {}};
+  io::Table table{.name = "faults",
+                  .columns = {"fault", "seed", "triggered", "effect", "outcome", "detected", "end", "message"},
+                  .rows = {}};
   for (const std::string& metric : manifest.metrics) {
     table.columns.push_back(metric);
     table.columns.push_back(metric + " difference");
@@ -83,6 +84,7 @@ io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
     cells.emplace_back(row.name);
     cells.emplace_back(static_cast<std::int64_t>(row.seed));
     cells.emplace_back(trigger_text(row));
+    cells.emplace_back(effect_text(row));
     cells.emplace_back(std::string(text_of(row.outcome)));
     cells.push_back(cell(row.num_detected));
     cells.emplace_back(row.end);
@@ -98,14 +100,14 @@ io::Table faults_table(const SweepManifest& manifest, const SweepRows& rows) {
 }
 
 std::string faults_text(const SweepManifest& manifest, const SweepRows& rows) {
-  std::string text =
-      fmt::format("{:<28} {:>4}  {:<13}  {:<9}  {:>8}  {:<16}", "fault", "seed", "", "outcome", "detected", "end");
+  std::string text = fmt::format("{:<28} {:>4}  {:<13}  {:<9}  {:<9}  {:>8}  {:<16}", "fault", "seed", "", "",
+                                 "outcome", "detected", "end");
   for (const std::string& metric : manifest.metrics) text += fmt::format("  {:>20}", metric);
   text += "\n";
   const std::vector<FaultRow> all = fault_rows(manifest, rows);
   for (const FaultRow& row : all) {
-    text += fmt::format("{:<28} {:>4}  {:<13}  {:<9}  {:>8.0f}  {:<16}", row.name, row.seed, trigger_text(row),
-                        text_of(row.outcome), row.num_detected.value_or(0.0), row.end);
+    text += fmt::format("{:<28} {:>4}  {:<13}  {:<9}  {:<9}  {:>8.0f}  {:<16}", row.name, row.seed, trigger_text(row),
+                        effect_text(row), text_of(row.outcome), row.num_detected.value_or(0.0), row.end);
     for (const auto& value : row.values)
       text += value ? fmt::format("  {:>20.4g}", *value) : fmt::format("  {:>20}", "-");
     text += "\n";

@@ -25,11 +25,34 @@ TEST(FaultTables, SaysWhatBecameOfEachFaultAndWhatItCost) {
   rows[1]->metrics["pose"]["ate_rmse_m"] = 0.3;
 
   const io::Table table = faults_table(manifest, rows);
-  EXPECT_EQ(table.rows[1][3], io::TableValue("stopped"));
+  EXPECT_EQ(table.rows[1][4], io::TableValue("stopped"));
   EXPECT_EQ(table.rows[2][2], io::TableValue("not triggered"));
   EXPECT_NEAR(std::get<double>(table.rows[1].back()), 0.2, 1e-12);
   EXPECT_THAT(faults_text(manifest, rows),
               HasSubstr("3 runs: 2 survived, 1 stopped; 1 faults not triggered, 0 without effect."));
+}
+
+TEST(FaultTables, FaultsWithoutEffectAreMarkedInTheirRowsOfFileAndText) {
+  SweepManifest manifest;
+  manifest.variants = {{.name = "no fault", .overrides = {}},
+                       {.name = "imu: drift", .overrides = {}},
+                       {.name = "tdlas: dropout", .overrides = {}},
+                       {.name = "uwb: freeze", .overrides = {}}};
+  manifest.seeds = {1};
+  manifest.metrics = {"pose.ate_rmse_m"};
+  for (std::size_t i = 0; i < 4; ++i) manifest.runs.push_back({.variant = i, .seed = 1, .overrides = {}, .hash = ""});
+  SweepRows rows = {fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kDone, true, 0),
+                    fault_verdict(RunStatus::kDone, true, 0), fault_verdict(RunStatus::kDone, true, 0, false)};
+  rows[0]->events.clear();
+  rows[1]->metrics["pose"]["ate_rmse_m"] = 0.3;
+
+  const io::Table table = faults_table(manifest, rows);
+  EXPECT_EQ(table.columns[3], "effect");
+  const std::vector<std::string> effects = {"", "effect", "no effect", ""};
+  for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(table.rows[row][3], io::TableValue(effects[row])) << row;
+  const std::string text = faults_text(manifest, rows);
+  EXPECT_THAT(text, HasSubstr("4 runs: 4 survived; 1 faults not triggered, 1 without effect."));
+  EXPECT_THAT(text.substr(text.find("tdlas: dropout"), 70), HasSubstr("triggered      no effect  survived"));
 }
 
 TEST(FaultTables, ADocumentHasSensorsDownKindsAcrossAndTheWorstOfTheSeeds) {
