@@ -46,8 +46,8 @@ void add_sums(const SeedValues& seed_values, Budget& budget) {
 }
 
 std::string numbers(const std::optional<score::Interval>& interval) {
-  return interval ? fmt::format("{:+10.5f}  [{:+.5f}, {:+.5f}]", interval->center, interval->low, interval->high)
-                  : "  too few runs";
+  return interval ? fmt::format("{:+.4g} [{:+.4g}, {:+.4g}]", interval->center, interval->low, interval->high)
+                  : "too few runs";
 }
 
 /// Text bar from `from` to `to` on a scale of `full`; at its start if `full` is not positive.
@@ -63,8 +63,24 @@ std::string bar(double from, double to, double full) {
   return text;
 }
 
-std::string line(const std::string& name, const std::optional<score::Interval>& interval, const std::string& picture) {
-  return fmt::format("  {:<28} {:<40} {}\n", name, numbers(interval), picture);
+/// Row of the text of a budget.
+struct BudgetLine {
+  std::string name, numbers, picture;
+};
+
+/// Lines with the columns of their longest names and numbers.
+std::string aligned(const std::vector<BudgetLine>& lines) {
+  std::size_t name_width = 0, numbers_width = 0;
+  for (const BudgetLine& line : lines) {
+    name_width = std::max(name_width, line.name.size());
+    numbers_width = std::max(numbers_width, line.numbers.size());
+  }
+  std::string text;
+  for (const BudgetLine& line : lines) {
+    text += fmt::format("  {:<{}}  {:>{}}", line.name, name_width, line.numbers, numbers_width);
+    text += line.picture.empty() ? "\n" : fmt::format("  {}\n", line.picture);
+  }
+  return text;
 }
 
 }  // namespace
@@ -112,18 +128,19 @@ std::string budget_text(const Budget& budget) {
     highest = std::max(highest, level);
   }
   level = budget.baseline->center;
-  text += line("baseline", budget.baseline, bar(0.0, level, highest));
+  std::vector<BudgetLine> lines = {{"baseline", numbers(budget.baseline), bar(0.0, level, highest)}};
   for (const Contribution& contribution : budget.contributions) {
     const double next = level - (contribution.value ? contribution.value->center : 0.0);
-    text += line(contribution.name, contribution.value,
-                 bar(level, next, highest) + (contribution.is_significant() ? "" : "  not significant"));
+    lines.push_back({contribution.name, numbers(contribution.value),
+                     bar(level, next, highest) + (contribution.is_significant() ? "" : "  not significant")});
     level = next;
   }
-  text += line("interaction", budget.interaction, bar(level, budget.ideal->center, highest));
-  text += line("all ideal", budget.ideal, bar(0.0, budget.ideal->center, highest));
-  text += fmt::format("  sum of the contributions {}\n", numbers(budget.sum));
-  return text + fmt::format("  not significant: p-value above 5 % after Holm's correction for {} error sources\n",
-                            budget.contributions.size());
+  lines.push_back({"interaction", numbers(budget.interaction), bar(level, budget.ideal->center, highest)});
+  lines.push_back({"all ideal", numbers(budget.ideal), bar(0.0, budget.ideal->center, highest)});
+  lines.push_back({"sum of the contributions", numbers(budget.sum), ""});
+  return text + aligned(lines) +
+         fmt::format("  not significant: p-value above 5 % after Holm's correction for {} error sources\n",
+                     budget.contributions.size());
 }
 
 io::Table budget_table(const std::vector<Budget>& budgets) {

@@ -1,6 +1,7 @@
 #include "app/campaign/sweep/budget.h"
 
 #include <set>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -100,7 +101,25 @@ TEST(Budget, AShareWithAPValueOfThreePercentIsNotSignificantAmongTwoSources) {
 
 TEST(Budget, OfAMetricThatIsZeroInEveryRunHasBars) {
   const std::string text = budget_text(budget_of({{0.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 0.0}}));
-  EXPECT_THAT(text, HasSubstr("+0.00000"));
+  EXPECT_THAT(text, HasSubstr("+0 [+0, +0]"));
+}
+
+TEST(Budget, TheTextHasColumnsForNamesOfAnyLength) {
+  const std::vector<std::vector<double>> values = {{10.0, 9.0, 4.0, 2.0}, {12.0, 11.0, 5.0, 3.0}};
+  SweepManifest manifest = manifest_for(values);
+  manifest.variants[1].name = "as built: mounting pose of the lidar and of the IMU";
+  const std::string text = budget_text(make_budget(manifest, rows_with(values), kMetric));
+  std::set<std::size_t> columns;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(']') != std::string::npos) columns.insert(line.find(']'));
+  }
+  EXPECT_EQ(columns.size(), 1u) << text;
+}
+
+TEST(Budget, SmallContributionsHaveFourSignificantDigits) {
+  const std::string text = budget_text(budget_of({{10e-6, 9e-6, 4e-6, 2e-6}, {12e-6, 11e-6, 5e-6, 3e-6}}));
+  EXPECT_THAT(text, HasSubstr("+6.5e-06 ["));
 }
 
 TEST(Budget, WithoutFiguresItSaysSo) {
