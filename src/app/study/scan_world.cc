@@ -247,7 +247,7 @@ const std::vector<ScannedWorld>& scanned_worlds() {
        .scenario = "worlds/substation/scenarios/navigate.yaml",
        .step_deg = 0.1,
        .elevation_min_deg = -40.0,
-       .scanners_m = {{7.5, 10.5},  // chosen by ScannerChoice
+       .scanners_m = {{7.5, 10.5},  // by the rule of ScannerChoice, scanner_choice_test.cc
                       {45.0, 6.0},
                       {82.5, 6.0},
                       {114.0, 19.5},
