@@ -73,6 +73,16 @@ class BadInput(unittest.TestCase):
         self.refuse("trace", "base", "--to-s", "-1", says=["--to-s", "-1: must be at least 0"])
         self.refuse("score", "--estimate", "a", "--reference", "b", "--max-dt-s", "-1", says=["max_dt_s"])
 
+    def test_names_of_options_that_are_none(self):
+        self.refuse("replay", "base", "--camera", "side", says=["patrol: --camera side: must be one of chase, top, onboard"])
+        self.refuse("replay", "base", "--style", "fast", says=["patrol: --style fast: must be one of highlights, continuous"])
+        self.refuse("replay", "base", "--renderer", "glx", says=["patrol: --renderer glx: must be one of auto, egl, osmesa"])
+        self.refuse_variants("sweep", "--keep-runs", "some", says=["patrol: --keep-runs some: must be one of none, failed, all"])
+        world = pathlib.Path(self.folder.name) / "map.yaml"
+        world.write_text("image: map.pgm\nresolution: 1\norigin: [0, 0, 0]\n")
+        (world.parent / "map.pgm").write_bytes(b"P5 4 4 255\n" + bytes([254]) * 16)
+        self.refuse("plan", world, "--from", "1,1", "--to", "2,2", "--planner", "nope", says=["patrol: --planner nope: must be one of astar, dijkstra"])
+
     def test_a_run_directory_excludes_files_to_score(self):
         self.refuse("score", "base", "--estimate", "a.tum", "--reference", "b.tum", says=["--estimate: excludes a run directory"])
         self.refuse("score", "base", "--max-dt-s", "0.1", says=["--max-dt-s", "exclude a run directory"])

@@ -42,11 +42,21 @@ double checked_speed(const char* option, double speed) {
   return speed;
 }
 
+/// Parses the name that an option has as its value. Throws InputError that begins with the option.
+template <typename Choice>
+Choice parse_choice(const char* option, const std::string& name, Choice (*parse)(const std::string&)) {
+  try {
+    return parse(name);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{} {}", option, error.what()));
+  }
+}
+
 render::ReplaySettings replay_settings(const ReplayOptions& options) {
   render::ReplaySettings settings;
-  settings.style = render::parse_film_style(options.style);
-  settings.camera = render::parse_camera_kind(options.camera);
-  settings.renderer = render::parse_renderer(options.renderer);
+  settings.style = parse_choice("--style", options.style, render::parse_film_style);
+  settings.camera = parse_choice("--camera", options.camera, render::parse_camera_kind);
+  settings.renderer = parse_choice("--renderer", options.renderer, render::parse_renderer);
   settings.speed.fast = checked_speed("--speed", options.speed);
   settings.speed.slow = checked_speed("--highlight-speed", options.highlight_speed);
   settings.frames_per_second = checked_speed("--fps", options.frames_per_second);

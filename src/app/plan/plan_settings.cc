@@ -10,10 +10,12 @@
 #include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
+#include "core/named_table.h"
 #include "core/text.h"
 #include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
 #include "plan/routes/global_planner.h"
+#include "plan/routes/planners.h"
 
 namespace patrol::app {
 namespace {
@@ -76,6 +78,10 @@ PlanSetup load_plan_setup(const PlanOptions& options) {
   if (options.radius_m) set_disc(*options.radius_m, setup);
 
   std::vector<std::string> overrides = options.overrides;
+  if (options.planner && find_named(plan::route_planners(), *options.planner) == nullptr) {
+    throw InputError(
+        fmt::format("--planner {}: must be one of {}", *options.planner, join(names_of(plan::route_planners()), ", ")));
+  }
   if (options.planner) overrides.push_back("planner=" + *options.planner);
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
   if (options.smooth) overrides.emplace_back("smooth=true");

@@ -107,7 +107,7 @@ std::vector<Chapter> chapters_of(const std::vector<Scene>& scenes, const SpeedPl
 FilmStyle parse_film_style(const std::string& name) {
   if (name == "highlights") return FilmStyle::kHighlights;
   if (name == "continuous") return FilmStyle::kContinuous;
-  throw InputError("style = " + name + ": must be one of highlights, continuous");
+  throw InputError(name + ": must be one of highlights, continuous");
 }
 
 ShotPlan plan_shots(const RunHistory& history, const std::vector<Highlight>& highlights, FilmStyle style,

@@ -26,7 +26,7 @@ CameraKind parse_camera_kind(const std::string& name) {
   if (name == "chase") return CameraKind::kChase;
   if (name == "top") return CameraKind::kTop;
   if (name == "onboard") return CameraKind::kOnboard;
-  throw InputError("camera = " + name + ": must be one of chase, top, onboard");
+  throw InputError(name + ": must be one of chase, top, onboard");
 }
 
 View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus) {

@@ -22,7 +22,7 @@ std::unique_ptr<GlContext> make_osmesa_context() {
 Renderer parse_renderer(const std::string& name) {
   if (name == "auto") return Renderer::kAuto;
   if (name == "egl") return Renderer::kEgl;
-  if (name != "osmesa") throw InputError("renderer = " + name + ": must be one of auto, egl, osmesa");
+  if (name != "osmesa") throw InputError(name + ": must be one of auto, egl, osmesa");
   return Renderer::kOsmesa;
 }
 

@@ -68,9 +68,7 @@ TEST(PlanSettings, OptionsWinOverSet) {
 
 TEST(PlanSettings, WhatIsWrongIsNamed) {
   const std::string unknown_planner = complaint({.map = "m.yaml", .planner = "fly"});
-  EXPECT_NE(unknown_planner.find("--set planner=fly: fly is out of range: must be one of astar, dijkstra, theta_star"),
-            std::string::npos)
-      << unknown_planner;
+  EXPECT_EQ(unknown_planner.find("--planner fly: must be one of astar, dijkstra, theta_star"), 0u) << unknown_planner;
   EXPECT_EQ(complaint({.map = "m.yaml", .robot = "hovering"}),
             "--robot: unknown robot 'hovering' (known: cart, quadruped, tracked, wheeled)");
   EXPECT_EQ(complaint({.map = "m.yaml", .robot = "tracked", .radius_m = 0.3}),

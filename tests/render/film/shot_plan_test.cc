@@ -110,7 +110,7 @@ TEST(ShotPlan, KnowsTheNamesOfItsCuts) {
     parse_film_style("fast");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "style = fast: must be one of highlights, continuous");
+    EXPECT_STREQ(error.what(), "fast: must be one of highlights, continuous");
   }
 }
 

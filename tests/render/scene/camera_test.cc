@@ -143,7 +143,7 @@ TEST(CameraKindTest, AnUnknownNameIsRefusedWithTheOnesThatAre) {
     parse_camera_kind("drone");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "camera = drone: must be one of chase, top, onboard");
+    EXPECT_STREQ(error.what(), "drone: must be one of chase, top, onboard");
   }
 }
 

@@ -46,7 +46,7 @@ TEST(GlContext, KnowsItsRenderersByName) {
     parse_renderer("glx");
     FAIL() << "accepted";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "renderer = glx: must be one of auto, egl, osmesa");
+    EXPECT_STREQ(error.what(), "glx: must be one of auto, egl, osmesa");
   }
 }
 
