@@ -73,6 +73,10 @@ class BadInput(unittest.TestCase):
         self.refuse("trace", "base", "--to-s", "-1", says=["--to-s", "-1: must be at least 0"])
         self.refuse("score", "--estimate", "a", "--reference", "b", "--max-dt-s", "-1", says=["max_dt_s"])
 
+    def test_a_snapshot_period_below_one_tick(self):
+        for period_s in ("1e-09", "0.0019"):
+            self.refuse_run(SHORT, "--snapshot-every", period_s, says=[f"patrol: --snapshot-every {period_s}: must be at least 0.002 s, one tick"])
+
     def test_names_of_options_that_are_none(self):
         self.refuse("replay", "base", "--camera", "side", says=["patrol: --camera side: must be one of chase, top, onboard"])
         self.refuse("replay", "base", "--style", "fast", says=["patrol: --style fast: must be one of highlights, continuous"])

@@ -70,6 +70,14 @@ void check_state(StackPort& stack) {
   stack.serialize_state(trial);
 }
 
+/// Throws InputError if a period of snapshots is shorter than a tick.
+void check_snapshot_period(double period_s, Time tick) {
+  if (period_s > 0.0 && from_seconds(period_s) < tick) {
+    throw InputError(
+        fmt::format("--snapshot-every {:g}: must be at least {:g} s, one tick", period_s, to_seconds(tick)));
+  }
+}
+
 /// Beginning of a branch: the other run up to an instant.
 class Branch {
  public:
@@ -255,6 +263,7 @@ std::optional<RunVerdict> run_once(const Scenario& scenario, const ScenarioFiles
                              .has_thread = mode.num_threads > 1};
   if (mode.has_snapshots() || mode.branch) refuse_other_process(scenario, mode.branch ? "--from" : "--snapshot-every");
   RunSystem run(scenario, files, context);  // these throw InputError before anything is written
+  check_snapshot_period(mode.snapshot_period_s, run.simulator.tick());
   if (mode.has_snapshots() || mode.branch) check_state(*run.stack);
   std::optional<Branch> branch;
   if (mode.branch) branch.emplace(*mode.branch, scenario, context, run.simulator.tick(), root);
