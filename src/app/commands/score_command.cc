@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
-#include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/common/progress_bar.h"
 #include "app/report/run_summary.h"
@@ -20,7 +19,6 @@
 #include "core/error.h"
 #include "io/json/registration_json.h"
 #include "io/maps/map_server.h"
-#include "io/mcap/mcap_reader.h"
 #include "io/trajectories/relations.h"
 #include "io/trajectories/tum.h"
 
@@ -29,11 +27,7 @@ namespace {
 
 ExitCode score_directory(const ScoreOptions& options) {
   const RunDirectory directory = open_run_directory(options.run);
-  if (std::filesystem::exists(incomplete_marker(directory.root))) {
-    throw InputError(fmt::format("{}: incomplete run; cannot be scored", directory.root.string()));
-  }
-  if (!io::McapReader(directory.log()).is_complete())
-    throw InputError(fmt::format("{}: is incomplete; cannot be scored", directory.log().string()));
+  require_complete(directory, "cannot be scored");
   const Scenario scenario = load_scenario(directory.scenario());
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(directory.scenario()));
   const ScoredRun scored = [&] {

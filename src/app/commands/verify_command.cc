@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "app/commands/commands.h"
-#include "app/common/output_directory.h"
 #include "app/common/temporary_folder.h"
 #include "app/record/run_directory.h"
 #include "app/run/feed_loop.h"
@@ -56,8 +55,7 @@ bool report(const char* half, const std::optional<io::LogDifference>& difference
 
 ExitCode verify_command(const VerifyOptions& options) {
   const RunDirectory directory = open_run_directory(options.run);
-  if (std::filesystem::exists(incomplete_marker(directory.root)))
-    throw InputError(fmt::format("{}: incomplete run; cannot be verified", directory.root.string()));
+  require_complete(directory, "cannot be verified");
   if (is_of_feed(directory.scenario())) {
     throw InputError(
         fmt::format("{}: was made by patrol feed, and the answers in it had no effect on the robot: verify the run "

@@ -5,6 +5,7 @@
 #include "app/common/output_directory.h"
 #include "app/record/outbox.h"
 #include "core/error.h"
+#include "io/mcap/mcap_reader.h"
 
 namespace patrol::app {
 namespace {
@@ -43,6 +44,13 @@ RunDirectory open_run_directory(const std::filesystem::path& root) {
     throw InputError(fmt::format("{}: not a run directory: log.mcap not found", root.string()));
   }
   return directory;
+}
+
+void require_complete(const RunDirectory& run, const std::string& consequence) {
+  if (std::filesystem::exists(incomplete_marker(run.root)))
+    throw InputError(fmt::format("{}: incomplete run; {}", run.root.string(), consequence));
+  if (!io::McapReader(run.log()).is_complete())
+    throw InputError(fmt::format("{}: is incomplete; {}", run.log().string(), consequence));
 }
 
 }  // namespace patrol::app

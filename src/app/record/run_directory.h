@@ -46,4 +46,8 @@ RunDirectory begin_run_directory(const std::filesystem::path& root);
 /// Opens the directory of an existing run. Throws InputError if it contains no log.
 RunDirectory open_run_directory(const std::filesystem::path& root);
 
+/// Throws InputError if a run was cut off or its log is truncated. `consequence`: end of the message, such as "cannot
+/// be scored".
+void require_complete(const RunDirectory& run, const std::string& consequence);
+
 }  // namespace patrol::app

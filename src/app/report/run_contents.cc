@@ -54,7 +54,8 @@ RunContents read_run_contents(const std::filesystem::path& root) {
   run.is_complete = run.directory.is_complete() && run.record.is_complete;
   if (std::filesystem::exists(run.directory.metrics())) run.metrics = io::load_metrics(run.directory.metrics());
   if (std::filesystem::exists(run.directory.truth_map())) run.truth_map = io::load_map(run.directory.truth_map());
-  if (std::filesystem::exists(run.directory.map_errors())) {
+  // A truncated log has an earlier map than the errors, or none.
+  if (run.record.is_complete && std::filesystem::exists(run.directory.map_errors())) {
     run.map_errors_m = io::load_map_errors(run.directory.map_errors(), run.record.map.geometry());
   }
   run.T_world_map = map_in_world(run);
