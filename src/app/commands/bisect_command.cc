@@ -19,6 +19,8 @@
 #include "core/text.h"
 #include "io/json/metrics_json.h"
 #include "io/logs/log_compare.h"
+#include "io/mcap/mcap_reader.h"
+#include "link/stack_process.h"
 
 namespace patrol::app {
 namespace {
@@ -27,19 +29,42 @@ namespace {
 struct TracedRun {
   std::filesystem::path root;
   std::string program;
+  std::string name;  ///< of the program in messages, with its option if there is one
 };
 
-/// Traces a run from one instant to another by its own program: a line for each tick.
+/// Program of an option, or else this program. Throws InputError if it is not found.
+TracedRun traced_run(const RunDirectory& run, const char* option, const std::optional<std::string>& given) {
+  if (!given) {
+    const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
+    return {.root = run.root, .program = self, .name = self};
+  }
+  if (!link::find_program(*given)) throw InputError(fmt::format("{} {}: program not found", option, *given));
+  return {.root = run.root, .program = *given, .name = fmt::format("{} {}", option, *given)};
+}
+
+/// Lines of a trace. Throws InputError, which names the program, if a line is not that of a tick or if all are missing.
+std::vector<TickDigest> parse_trace(const TracedRun& run, const std::string& output) {
+  const auto refuse = [&](const std::string& reason) {
+    throw InputError(fmt::format("{}: is not a patrol that can trace {}: {}", run.name, run.root.string(), reason));
+  };
+  std::vector<TickDigest> ticks;
+  std::istringstream lines(output);
+  try {
+    for (std::string line; std::getline(lines, line);) ticks.push_back(parse_tick_digest(line));
+  } catch (const InputError& error) {
+    refuse(error.what());
+  }
+  if (ticks.empty()) refuse("it printed nothing");
+  return ticks;
+}
+
+/// Traces a run from one instant to another by its own program: a line for each tick, at least one.
 std::vector<TickDigest> trace(const TracedRun& run, Time from, Time to) {
   const ProgramResult result =
       run_program({run.program, "trace", run.root.string(), "--from-s", fmt::format("{}", to_seconds(from)), "--to-s",
                    fmt::format("{}", to_seconds(to))});
-  if (result.exit_code != 0)
-    throw InputError(fmt::format("{}: cannot be traced by {}", run.root.string(), run.program));
-  std::vector<TickDigest> ticks;
-  std::istringstream lines(result.output);
-  for (std::string line; std::getline(lines, line);) ticks.push_back(parse_tick_digest(line));
-  return ticks;
+  if (result.exit_code != 0) throw InputError(fmt::format("{}: cannot be traced by {}", run.root.string(), run.name));
+  return parse_trace(run, result.output);
 }
 
 /// Returns whether a run is a branch with settings of its own from an instant on.
@@ -90,28 +115,35 @@ class TracePair {
   bool has_states_ = false;
 };
 
-/// Instants from which both runs can be traced, before `end`, in ascending order; the start is the first.
+/// Instants from which both runs can be traced, up to `end` and the ends of both, in ascending order; the start is the
+/// first.
 std::vector<Time> common_instants(const RunDirectory& a, const RunDirectory& b, Time end) {
   const std::vector<Time> of_a = trace_starts(a), of_b = trace_starts(b);
   std::vector<Time> common;
   std::ranges::set_intersection(of_a, of_b, std::back_inserter(common));
-  std::erase_if(common, [&](Time time) { return time > end; });
+  const Time last = std::min({end, io::last_message_time(a.log()), io::last_message_time(b.log())});
+  std::erase_if(common, [&](Time time) { return time > last; });
   return common;
 }
+
+/// Returns the seconds of an instant as the nearest number: 3.03 for 3,030,000,000 ns.
+double nearest_seconds(Time time) { return static_cast<double>(time.count()) / 1e9; }
 
 }  // namespace
 
 ExitCode trace_command(const TraceOptions& options) {
-  trace_run(options.run, from_seconds(options.from_s), from_seconds(options.to_s),
-            [](const TickDigest& tick) { fmt::print("{}\n", to_text(tick)); });
+  const Time from = from_seconds(options.from_s), to = from_seconds(options.to_s);
+  trace_run(options.run, from, to, [](const TickDigest& tick) { fmt::print("{}\n", to_text(tick)); });
   return ExitCode::kDone;
 }
 
 ExitCode bisect_command(const BisectOptions& options) {
   const RunDirectory a = open_run_directory(options.a), b = open_run_directory(options.b);
+  const TracedRun traced_a = traced_run(a, "--program-a", options.program_a);
+  const TracedRun traced_b = traced_run(b, "--program-b", options.program_b);
+  for (const RunDirectory& run : {a, b}) require_complete(run, "cannot be compared");
   ProgressBar bar;
   bar.show("bisect  comparing the logs");
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::optional<io::LogDifference> in_logs = io::first_difference(a.log(), b.log());
   if (!in_logs) {
     print_result(options.form, "equal: no message differs\n", {{"equal", true}});
@@ -120,22 +152,21 @@ ExitCode bisect_command(const BisectOptions& options) {
   for (const RunDirectory& run : {a, b}) refuse_other_process(load_scenario(run.scenario()), run.root.string());
   const std::vector<Time> instants = common_instants(a, b, in_logs->log_time);
   bar.show("bisect  comparing the starts");
-  const TracePair pair({a.root, options.program_a.value_or(self)}, {b.root, options.program_b.value_or(self)});
+  const TracePair pair(traced_a, traced_b);
   const auto last_equal = std::prev(std::partition_point(instants.begin() + 1, instants.end(), [&](Time time) {
     bar.show(fmt::format("bisect  comparing the states at {:.1f} s", to_seconds(time)));
     return pair.are_equal_at(time);
   }));
   const auto next = std::next(last_equal);
   const Time end = next == instants.end() ? in_logs->log_time + Time{1} : *next;
-  bar.show(
-      fmt::format("bisect  repeating both runs from {:.1f} to {:.1f} s", to_seconds(*last_equal), to_seconds(end)));
+  bar.show(fmt::format("bisect  repeating both runs from {:.1f} to {:.1f} s", to_seconds(*last_equal), to_seconds(end)));
   const std::optional<TracePair::Difference> difference = pair.first_difference(*last_equal, end);
   if (!difference)
     throw InputError(fmt::format("{} and {}: their programs do not repeat the difference of their logs: {}",
                                  a.root.string(), b.root.string(), io::describe(*in_logs)));
   io::Metrics json;
   json["equal"] = false;
-  json["first_difference_s"] = to_seconds(difference->time);
+  json["first_difference_s"] = nearest_seconds(difference->time);
   json["parts"] = difference->parts;
   json["first_message"] = io::describe(*in_logs);
   print_result(options.form,

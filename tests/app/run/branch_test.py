@@ -72,6 +72,9 @@ class Branch(unittest.TestCase):
         done = run_patrol("verify", broken)
         self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
         self.assertIn("log.mcap: is incomplete; cannot be verified", done.stderr)
+        done = run_patrol("bisect", self.parent, broken)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("log.mcap: is incomplete; cannot be compared", done.stderr)
         self.assertTrue((broken / "map_errors.pgm").exists())
         done = run_patrol("report", broken)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -81,6 +84,9 @@ class Branch(unittest.TestCase):
         done = run_patrol("verify", broken)
         self.assertEqual(done.returncode, 2)
         self.assertIn("incomplete run; cannot be verified", done.stderr)
+        done = run_patrol("bisect", broken, self.parent)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("broken: incomplete run; cannot be compared", done.stderr)
         (broken / "log.mcap").write_bytes(log[: len(log) // 2])
         fed = run_patrol("feed", broken, "--out", self.path / "fed")
         self.assertIn("broken: incomplete run: fed up to its last message", fed.stderr)
@@ -130,6 +136,17 @@ class Branch(unittest.TestCase):
         self.assertIn("branch.json: branch_of = ", done.stderr)
         span = ("--from-s", at_s - 0.1, "--to-s", at_s)
         self.assertEqual(run_patrol("trace", other, *span).stdout, run_patrol("trace", self.parent, *span).stdout)
+
+    def test_bisect_names_a_program_that_cannot_trace(self):
+        other = self.path / "with_other_seed"
+        run_patrol("run", self.scenario, "--set", "time_limit_s=0.5", "--seed", 2, "--out", other)
+        programs = {"/bin/true": "printed nothing", "/bin/echo": "not a line of a trace", "/no/such/program": "program not found"}
+        for option in ("--program-a", "--program-b"):
+            for program, reason in programs.items():
+                done = run_patrol("bisect", self.parent, other, option, program)
+                self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+                self.assertIn(f"patrol: {option} {program}: ", done.stderr)
+                self.assertIn(reason, done.stderr)
 
     def test_bisect_finds_no_difference_of_a_repeated_run(self):
         again = self.path / "again"
