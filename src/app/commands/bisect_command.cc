@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -73,6 +74,9 @@ bool has_changed_settings(const std::filesystem::path& root) {
   return std::filesystem::exists(branch) && io::load_metrics(branch).value("has_other_settings", true);
 }
 
+/// Simulated time whose ticks are compared without a search for a later start or a hint on snapshots.
+constexpr Time kShortSearch = std::chrono::seconds(1);
+
 /// Compares the traces of two runs. Between different builds or scenarios the bytes of a state may differ without a
 /// difference in their values; then only motion and messages are compared.
 class TracePair {
@@ -95,6 +99,16 @@ class TracePair {
 
   bool are_equal_at(Time time) const {
     return different_parts(trace(a_, time, time).at(0), trace(b_, time, time).at(0)).empty();
+  }
+
+  /// Returns an instant in [start, end) at which the runs are equal. Hashing the state at every tick takes longer than
+  /// repeating a run, so that instants shortly before `end` are tried first.
+  Time late_start(Time start, Time end) const {
+    constexpr int kGrowth = 4;
+    for (Time window = kShortSearch; end - window > start; window *= kGrowth) {
+      if (are_equal_at(end - window)) return end - window;
+    }
+    return start;
   }
 
   struct Difference {
@@ -151,6 +165,12 @@ ExitCode bisect_command(const BisectOptions& options) {
   }
   for (const RunDirectory& run : {a, b}) refuse_other_process(load_scenario(run.scenario()), run.root.string());
   const std::vector<Time> instants = common_instants(a, b, in_logs->log_time);
+  if (instants.size() == 1 && in_logs->log_time > kShortSearch) {
+    bar.print_line(fmt::format(
+        "bisect: the runs have no common snapshot before {:.3f} s and are repeated from the start; runs with "
+        "--snapshot-every are compared faster",
+        to_seconds(in_logs->log_time)));
+  }
   bar.show("bisect  comparing the starts");
   const TracePair pair(traced_a, traced_b);
   const auto last_equal = std::prev(std::partition_point(instants.begin() + 1, instants.end(), [&](Time time) {
@@ -159,8 +179,10 @@ ExitCode bisect_command(const BisectOptions& options) {
   }));
   const auto next = std::next(last_equal);
   const Time end = next == instants.end() ? in_logs->log_time + Time{1} : *next;
-  bar.show(fmt::format("bisect  repeating both runs from {:.1f} to {:.1f} s", to_seconds(*last_equal), to_seconds(end)));
-  const std::optional<TracePair::Difference> difference = pair.first_difference(*last_equal, end);
+  bar.show(fmt::format("bisect  comparing the states before {:.1f} s", to_seconds(end)));
+  const Time start = pair.late_start(*last_equal, end);
+  bar.show(fmt::format("bisect  repeating both runs from {:.1f} to {:.1f} s", to_seconds(start), to_seconds(end)));
+  const std::optional<TracePair::Difference> difference = pair.first_difference(start, end);
   if (!difference)
     throw InputError(fmt::format("{} and {}: their programs do not repeat the difference of their logs: {}",
                                  a.root.string(), b.root.string(), io::describe(*in_logs)));
