@@ -147,6 +147,12 @@ double nearest_seconds(Time time) { return static_cast<double>(time.count()) / 1
 
 ExitCode trace_command(const TraceOptions& options) {
   const Time from = from_seconds(options.from_s), to = from_seconds(options.to_s);
+  if (to < from)
+    throw InputError(fmt::format("--to-s {:g}: must be at least --from-s, {:g}", options.to_s, options.from_s));
+  if (const Time end = io::last_message_time(open_run_directory(options.run).log()); from > end) {
+    throw InputError(
+        fmt::format("--from-s {:g}: must be in [0, {:.3f}], the duration of the run", options.from_s, to_seconds(end)));
+  }
   trace_run(options.run, from, to, [](const TickDigest& tick) { fmt::print("{}\n", to_text(tick)); });
   return ExitCode::kDone;
 }

@@ -58,6 +58,10 @@ class Branch(unittest.TestCase):
         self.refused("time_limit_s = 3 is before the branch: must be at least 4.000 s", "--from", f"{self.parent}@4", "--set", "time_limit_s=3")
         self.refused("excludes --seed", "--from", f"{self.parent}@4", "--seed", 2)
         self.refused("needs a scenario", "--set", "seed=2")
+        cut_off = self.path / "cut_off"
+        shutil.copytree(self.parent, cut_off)
+        (cut_off / "INCOMPLETE").write_text("")
+        self.refused("cut_off: the run is incomplete", "--from", f"{cut_off}@4")
         self.refused("cannot be saved", self.scenario, "--snapshot-every", 2, "--stack", "some program")
 
     def test_a_run_that_is_not_whole_is_no_result(self):
@@ -157,6 +161,14 @@ class Branch(unittest.TestCase):
                 self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
                 self.assertIn(f"patrol: {option} {program}: ", done.stderr)
                 self.assertIn(reason, done.stderr)
+
+    def test_a_trace_outside_of_the_run_is_refused(self):
+        for span, says in ((("--from-s", 50, "--to-s", 60), "--from-s 50: must be in [0, 6.000], the duration of the run"),
+                           (("--from-s", 3, "--to-s", 2), "--to-s 2: must be at least --from-s, 3")):
+            done = run_patrol("trace", self.parent, *span)
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (2, "", f"patrol: {says}\n"))
+        lines = run_patrol("trace", self.parent, "--from-s", 5.998, "--to-s", 60).stdout.splitlines()
+        self.assertEqual(sorted({line.split()[0] for line in lines}), ["5998000000", "6000000000"])
 
     def test_bisect_finds_no_difference_of_a_repeated_run(self):
         again = self.path / "again"
