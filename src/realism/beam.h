@@ -59,6 +59,8 @@ struct BeamRules {
   double max_residual_m = 0.3;  ///< residual from which on a return is not of the expected static surface
   double neighbor_m = 0.3;      ///< difference of range of neighboring beams on one unmapped object
   double margin_deg = 0.6;      ///< azimuth to each side over which a smooth surface continues
+  double margin_m = 0.05;       ///< distance across the beam to each side over which a smooth surface continues, too:
+                                ///< one cell of a map, by which edges of a site made from it are off
   double jump_m = 0.06;         ///< deviation from a smooth surface that counts as an edge
   double max_turn_deg = 20.0;   ///< change of the normal within the margin that counts as an edge; 180: none does, for
                                 ///< sites with walls of square cells
@@ -68,6 +70,7 @@ struct BeamRules {
     visit("max_residual_m", self.max_residual_m, between(0.02, 10.0));
     visit("neighbor_m", self.neighbor_m, between(0.01, 10.0));
     visit("margin_deg", self.margin_deg, between(0.1, 5.0));
+    visit("margin_m", self.margin_m, between(0.0, 2.0));
     visit("jump_m", self.jump_m, between(0.01, 0.1));
     visit("max_turn_deg", self.max_turn_deg, between(1.0, 180.0));
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/geometry/angles.h"
 
@@ -10,6 +11,7 @@ namespace patrol::realism {
 namespace {
 
 constexpr double kMinJump_m = 0.1, kMaxJump_m = 1.5;  // of mixed pixels in the lidar model (sim/sensors/lidar.cc)
+constexpr double kMaxWide_rad = 15.0 * kDegree;       // of the margin in meters, on near surfaces
 
 /// Casts about one beam.
 class BeamFan {
@@ -48,30 +50,47 @@ bool is_same_surface(const SurfaceHit& hit, const SurfaceHit& other, const BeamR
          std::abs(hit.reflectivity - other.reflectivity) < 1e-3 && hit.is_glass == other.is_glass;
 }
 
-ExpectedBeam expected_beam(const BeamFan& fan, double step_rad, const BeamRules& rules) {
+/// Whether the surface of a beam continues: to the neighboring beams, and over the distance of the rules.
+struct Continuity {
+  bool is_local = false, is_wide = false;
+};
+
+Continuity continuity_of(const BeamFan& fan, const SurfaceHit& hit, double slope_m_per_rad, double step_rad,
+                         const BeamRules& rules) {
+  const auto is_continued = [&](double offset_rad) {
+    const std::optional<SurfaceHit> low = fan.cast(-offset_rad), high = fan.cast(offset_rad);
+    return low && high && is_same_surface(hit, *low, rules) && is_same_surface(hit, *high, rules) &&
+           is_continuous(hit.range_m, low->range_m, high->range_m, slope_m_per_rad, offset_rad, rules);
+  };
+  const double margin_rad = rules.margin_deg * kDegree;
+  Continuity result{.is_local = true};
+  for (const double offset_rad : {0.25 * margin_rad, 0.5 * margin_rad, margin_rad, std::max(margin_rad, step_rad)}) {
+    if (!is_continued(offset_rad)) return {};
+  }
+  result.is_wide = true;
+  const double wide_rad = std::min(std::atan2(rules.margin_m, hit.range_m), kMaxWide_rad);
+  for (const double offset_rad : {0.5 * wide_rad, wide_rad}) {
+    if (offset_rad > margin_rad && !is_continued(offset_rad)) result.is_wide = false;
+  }
+  return result;
+}
+
+/// Beam with the continuity of its surface to the neighboring beams.
+std::pair<ExpectedBeam, bool> expected_beam(const BeamFan& fan, double step_rad, const BeamRules& rules) {
   ExpectedBeam beam;
   const std::optional<SurfaceHit> hit = fan.cast(0.0);
-  if (!hit) return beam;
+  if (!hit) return {beam, false};
   beam.range_m = hit->range_m;
   beam.normal = hit->normal;
   beam.cosine = std::min(1.0, -hit->normal.dot(fan.direction(0.0)));
   beam.reflectivity = hit->reflectivity;
   beam.is_glass = hit->is_glass;
-  beam.is_smooth = true;
-  bool is_first = true;
-  const double margin_rad = rules.margin_deg * kDegree;
-  for (const double offset_rad : {0.25 * margin_rad, 0.5 * margin_rad, margin_rad, std::max(margin_rad, step_rad)}) {
-    const std::optional<SurfaceHit> low = fan.cast(-offset_rad), high = fan.cast(offset_rad);
-    if (!low || !high) {
-      beam.is_smooth = false;
-      break;
-    }
-    if (std::exchange(is_first, false)) beam.slope_m_per_rad = (high->range_m - low->range_m) / (2.0 * offset_rad);
-    beam.is_smooth = is_same_surface(*hit, *low, rules) && is_same_surface(*hit, *high, rules) &&
-                     is_continuous(beam.range_m, low->range_m, high->range_m, beam.slope_m_per_rad, offset_rad, rules);
-    if (!beam.is_smooth) break;
-  }
-  return beam;
+  const double offset_rad = 0.25 * rules.margin_deg * kDegree;
+  const std::optional<SurfaceHit> low = fan.cast(-offset_rad), high = fan.cast(offset_rad);
+  if (low && high) beam.slope_m_per_rad = (high->range_m - low->range_m) / (2.0 * offset_rad);
+  const Continuity continuity = continuity_of(fan, *hit, beam.slope_m_per_rad, step_rad, rules);
+  beam.is_smooth = continuity.is_wide;
+  return {beam, continuity.is_local};
 }
 
 }  // namespace
@@ -81,10 +100,11 @@ std::vector<ExpectedBeam> expected_beams(const Site& site, const PosedScan& pose
   beams.reserve(posed.num_beams());
   const double step_rad = std::abs(posed.scan.angle_increment_rad);
   for (std::size_t i = 0; i < posed.num_beams(); ++i) {
-    beams.push_back(expected_beam(BeamFan(site, posed, i), step_rad, rules));
+    const auto [beam, is_continued] = expected_beam(BeamFan(site, posed, i), step_rad, rules);
+    beams.push_back(beam);
     if (i == 0) continue;
     const double jump_m = std::abs(beams[i].range_m - beams[i - 1].range_m);
-    beams[i].is_jump = !beams[i].is_smooth && jump_m > kMinJump_m && jump_m < kMaxJump_m;
+    beams[i].is_jump = !is_continued && jump_m > kMinJump_m && jump_m < kMaxJump_m;
   }
   return beams;
 }

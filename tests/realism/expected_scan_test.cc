@@ -91,6 +91,36 @@ TEST(ExpectedBeams, AChangeOfReflectivityOrOfTheNormalIsNoSmoothSurface) {
   EXPECT_NEAR(beams[380].reflectivity, 0.1, 1e-6);
 }
 
+TEST(ExpectedBeams, SurfacesNarrowerThanTheMarginInMetersAreNotSmooth) {
+  // A post of 8 cm at 2 m: 0.6 degrees are 2 cm there. A wall 3 m behind it: both steps of the range exceed mixed
+  // pixels.
+  const Site site = test::site_of(box("2.04 0 0", "0.04 0.04 3") + box("5.5 0 0", "0.5 6 3"));
+  const PosedScan posed = test::posed_scan(721, kPi / 2.0);
+  const std::vector<ExpectedBeam> by_default = expected_beams(site, posed, {});
+  const std::vector<ExpectedBeam> by_angle = expected_beams(site, posed, {.margin_m = 0.0});
+  EXPECT_NEAR(by_angle[360].range_m, 2.0, 1e-3);
+  EXPECT_TRUE(by_angle[360].is_smooth);
+  EXPECT_FALSE(by_default[360].is_smooth);
+  EXPECT_NEAR(by_default[360].slope_m_per_rad, by_angle[360].slope_m_per_rad, 1e-9);
+  EXPECT_TRUE(by_default[500].is_smooth);  // on the wall
+  const std::vector<ExpectedBeam> wide = expected_beams(site, posed, {.margin_m = 0.03});
+  EXPECT_TRUE(wide[360].is_smooth);
+}
+
+TEST(ExpectedBeams, TheMarginInMetersMakesNoJumps) {
+  // A wall at 80 degrees of incidence ends at x = 4 m: the ranges of beams on it are up to 0.2 m apart.
+  const Site site = test::site_of(box("2 0.6 0", "2 0.1 3") + box("6.5 0 0", "0.5 6 3"));
+  const PosedScan posed = test::posed_scan(180, kPi);
+  const std::vector<ExpectedBeam> by_default = expected_beams(site, posed, {});
+  const std::vector<ExpectedBeam> by_angle = expected_beams(site, posed, {.margin_m = 0.0});
+  std::size_t num_narrow = 0;
+  for (std::size_t i = 0; i < by_default.size(); ++i) {
+    EXPECT_EQ(by_default[i].is_jump, by_angle[i].is_jump) << i;
+    if (by_angle[i].is_smooth && !by_default[i].is_smooth) ++num_narrow;
+  }
+  EXPECT_GT(num_narrow, 0u);
+}
+
 TEST(PlaceScan, BeamsHaveThePoseOfTheirOwnInstant) {
   const Trajectory path = {{from_seconds(0.0), to_pose3({0.0, 0.0, 0.0})},
                            {from_seconds(1.0), to_pose3({2.0, 0.0, 1.0})}};
