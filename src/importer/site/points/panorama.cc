@@ -66,8 +66,11 @@ bool is_continuous(float a_m, float b_m, float c_m, float d_m, double angle_rad)
   const double jump = std::abs(b - c), lateral = angle_rad * std::min(b, c);
   if (jump <= 1.5 * lateral + 0.004) return true;
   if (jump > kSteepest * lateral + 0.01) return false;
-  // The inverse range of a plane is linear over small angles.
-  const double tolerance = 0.15 * jump + 0.004;
+  // The inverse range of a plane is linear over small angles. Errors of the angles (scanner.h: 19") change the jump
+  // more, the closer the beams are: by two standard deviations of a second difference.
+  constexpr double kCurvature = 0.15, kAngleError_rad = 9.2e-5, kMaxTolerance = 0.3;
+  const double by_angles = 2.0 * std::sqrt(6.0) * kAngleError_rad / angle_rad;
+  const double tolerance = std::min(kMaxTolerance, std::hypot(kCurvature, by_angles)) * jump + 0.004;
   const auto continues = [&](double before, double at, double after) {
     if (before <= 0.0) return false;
     const double inverse = 2.0 / at - 1.0 / before;
