@@ -109,7 +109,8 @@ FirstSurface first_surface(const RayWorld& world, const std::vector<sim::Surface
 /// Surfaces of a world that its scanners see.
 class SeenSurfaces {
  public:
-  SeenSurfaces(const ScannedWorld& world, const RayWorld& truth) : truth_(truth) {
+  SeenSurfaces(const ScannedWorld& world, const RayWorld& truth)
+      : truth_(truth), lowest_(std::sin(to_rad(world.elevation_min_deg))) {
     for (const Eigen::Vector2d& p : world.scanners_m)
       scanners_m_.emplace_back(p.x(), p.y(), truth.ground_m(p) + kScannerHeight_m);
   }
@@ -122,6 +123,7 @@ class SeenSurfaces {
       const double distance_m = (p_m - scanner_m).norm();
       if (distance_m > max_range_m) return false;
       const Eigen::Vector3d direction = (p_m - scanner_m) / distance_m;
+      if (direction.z() < lowest_) return false;
       const auto hit = truth_.scene().cast(scanner_m, direction, distance_m + kSame_m, sim::kRayScenery);
       return hit && hit->distance_m > distance_m - kSame_m && std::abs(hit->normal.dot(direction)) >= kMinCosine;
     });
@@ -129,6 +131,7 @@ class SeenSurfaces {
 
  private:
   const RayWorld& truth_;
+  double lowest_;  ///< sine of the lowest elevation of the beams
   std::vector<Eigen::Vector3d> scanners_m_;
 };
 
@@ -242,7 +245,8 @@ const std::vector<ScannedWorld>& scanned_worlds() {
        .truck_yaw_deg = 180.0},
       {.name = "substation",
        .scenario = "worlds/substation/scenarios/navigate.yaml",
-       .step_deg = 0.12,
+       .step_deg = 0.1,
+       .elevation_min_deg = -40.0,
        .scanners_m = {{8.0, 8.0},
                       {40.0, 8.0},
                       {75.0, 8.0},
@@ -289,6 +293,7 @@ std::vector<io::StationScan> take_scans(const ScannedWorld& world, std::uint64_t
   PanoramicScannerSettings settings;
   settings.enabled = true;
   settings.step_deg = world.step_deg;
+  settings.elevation_min_deg = world.elevation_min_deg;
   std::vector<io::StationScan> scans;
   for (std::size_t i = 0; i < world.scanners_m.size(); ++i) {
     const RayWorld& rays = i == world.guest_scan ? busy : empty;

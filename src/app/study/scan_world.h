@@ -16,9 +16,10 @@ namespace patrol::app {
 
 /// World with positions for panoramic scans, and with roads on which its site is compared.
 struct ScannedWorld {
-  std::string name;       ///< of the world in worlds/
-  std::string scenario;   ///< navigation in the world, below the data root
-  double step_deg = 0.0;  ///< of the scanner; the 12 scans together have about 19 million points
+  std::string name;                  ///< of the world in worlds/
+  std::string scenario;              ///< navigation in the world, below the data root
+  double step_deg = 0.0;             ///< of the scanner; the 12 scans together have about 19 million points
+  double elevation_min_deg = -60.0;  ///< lowest elevation of the beams of the scanner
   std::vector<Eigen::Vector2d> scanners_m;
   std::vector<std::vector<Eigen::Vector2d>> roads_m;  ///< center lines
   double half_road_m = 1.5;                           ///< half the width of the roads
@@ -56,7 +57,8 @@ void add_anchors(const ScannedWorld& world, const std::filesystem::path& site_xm
 /// Differences of ranges at held-out poses. A beam returns up to an incidence of 85 degrees. Its difference is that of
 /// the first surfaces; it is infinite if the world returns it and the site has no surface, or if the site returns it
 /// and the world has no surface within 0.1 m of that range. A scanner sees a surface if the line to it is free, at most
-/// 70 m long and at most at an incidence of 85 degrees. Beams past all surfaces of the world count as seen.
+/// 70 m long, not below the scanner's lowest elevation and at most at an incidence of 85 degrees. Beams past all
+/// surfaces of the world count as seen.
 struct RangeDifferences {
   double median_m = 0.0, p95_m = 0.0;
   double within_10cm = 0.0;       ///< fraction of beams
