@@ -57,8 +57,9 @@ studies::Study scan_import_study() {
       .source = "no publication; test of the import of sites",
       .conditions =
           "Each seed: 12 panoramic scans 1.7 m above the ground of the tunnel (every 13 m, step 0.18 degrees) and of "
-          "the substation (step 0.12 degrees), with the noise of the scanner's data sheet and exact poses. A person "
-          "and a truck are present in one scan. The site of the points alone is compared with the world at 200 "
+          "the substation (at positions on the roads that see what lidars there see, step 0.1 degrees, down to 40 "
+          "degrees below the horizon), with the noise of the scanner's data sheet and exact poses. A person and a "
+          "truck are present in one scan. The site of the points alone is compared with the world at 200 "
           "held-out poses on the roads with a clearance of 0.6 m: a 2D lidar 0.55 m above the ground, 720 beams to 30 "
           "m, and a 3D lidar 0.8 m above it, 16 rings within 15 degrees of 360 beams to 100 m, both without noise and "
           "with returns up to an incidence of 85 degrees. A beam that the world returns and the site has no surface "
