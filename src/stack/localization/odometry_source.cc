@@ -14,6 +14,7 @@
 #include "localize/localize_state.h"
 #include "localize/map_pose_tracker.h"
 #include "localize/track_odometry.h"
+#include "localize/wheel_rows.h"
 
 namespace patrol::stack {
 namespace {
@@ -74,7 +75,7 @@ class DifferentialOdometrySource : public OdometrySource {
 
  private:
   /// Returns the counts of the two sides in a message; none if it has no counts.
-  virtual std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const = 0;
+  virtual std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) = 0;
 
   localize::TrackOdometry odometry_;
 };
@@ -85,7 +86,7 @@ class TrackedOdometrySource final : public DifferentialOdometrySource {
       : DifferentialOdometrySource(robot, settings.odometry.tracked) {}
 
  private:
-  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const override {
+  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) override {
     const auto* ticks = std::get_if<TrackTicks>(&message);
     return ticks ? std::optional<localize::DriveTicks>(*ticks) : std::nullopt;
   }
@@ -99,38 +100,28 @@ const JointState* usable_joints(const SensorMessage& message, const RobotDescrip
   return std::ranges::all_of(joints->position_rad, [](double rad) { return std::isfinite(rad); }) ? joints : nullptr;
 }
 
-/// The wheels of a side, which are not steered, count as one with the mean of their angles.
+/// The wheels of a side, which are not steered, count as one track.
 class WheeledOdometrySource final : public DifferentialOdometrySource {
  public:
   WheeledOdometrySource(const RobotDescription& robot, const StackSettings& settings)
       : DifferentialOdometrySource(robot, settings.odometry.wheeled),
         robot_(robot),
-        ticks_per_rad_(settings.odometry.wheeled.ticks_per_sprocket_turn / (2.0 * std::numbers::pi)) {
-    for (const WheelGeometry& wheel : robot.wheels) {
-      if (wheel.drive_joint && !wheel.steering_joint) (wheel.is_left() ? left_ : right_).push_back(wheel);
-    }
-    if (left_.empty() || right_.empty()) {
-      throw InputError(fmt::format(
-          "stack.odometry_source = wheeled: robot {} has no driven wheels on both sides that are not steered",
-          robot.name));
-    }
+        rows_(robot, settings.odometry.wheeled.ticks_per_sprocket_turn) {}
+
+  void serialize_state(StateArchive& archive) override {
+    DifferentialOdometrySource::serialize_state(archive);
+    archive(rows_);
   }
 
  private:
-  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const override {
+  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) override {
+    if (const auto* imu = std::get_if<Imu>(&message)) rows_.add(*imu);
     const JointState* joints = usable_joints(message, robot_);
-    if (!joints) return std::nullopt;
-    return TrackTicks{.stamp = joints->stamp, .left = ticks(left_, *joints), .right = ticks(right_, *joints)};
-  }
-  std::int64_t ticks(const std::vector<WheelGeometry>& side, const JointState& joints) const {
-    double angle_rad = 0.0;
-    for (const WheelGeometry& wheel : side) angle_rad += wheel.forward_sign * joints.position_rad[*wheel.drive_joint];
-    return std::llround(angle_rad / static_cast<double>(side.size()) * ticks_per_rad_);
+    return joints ? std::optional<localize::DriveTicks>(rows_.add(*joints)) : std::nullopt;
   }
 
   RobotDescription robot_;
-  double ticks_per_rad_;
-  std::vector<WheelGeometry> left_, right_;
+  localize::WheelRows rows_;
 };
 
 /// The angles of the four mecanum wheels yield a displacement in body (mecanum_motion): its forward part and its
@@ -145,7 +136,7 @@ class MecanumOdometrySource final : public DifferentialOdometrySource {
                      (2.0 * std::numbers::pi * differential_geometry(robot).rolling_radius_m)) {}
 
  private:
-  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) const override {
+  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) override {
     const JointState* joints = usable_joints(message, robot_);
     if (!joints) return std::nullopt;
     const WheelMotion moved = mecanum_motion(robot_, joints->position_rad);

@@ -64,5 +64,23 @@ TEST(OdometrySource, WheelReadingsOfTheWrongSizeOrNotFiniteAreIgnored) {
   }
 }
 
+// The robot stands on three wheels, and the fourth one turns in the air at 0.5 m/s.
+TEST(OdometrySource, ALiftedWheelThatTurnsDoesNotMoveTheRobot) {
+  StackSettings settings;
+  settings.odometry_source = "wheeled";
+  const auto odometry = make_odometry_source(settings, make_robot_on_wheels(false));
+  std::vector<double> position_rad(4, 0.0);
+  for (int tick = 0; tick < 6000; ++tick) {
+    const double time_s = 0.004 * tick, dither = tick % 2 == 0 ? 1e-4 : -1e-4;
+    odometry->add(Imu{.stamp = from_seconds(time_s),
+                      .angular_velocity_radps = {0.0, 0.0, dither},
+                      .linear_acceleration_mps2 = {dither, 0.0, 9.81}});
+    if (time_s > 4.0) position_rad[0] += 0.004 * 0.5 / 0.1;
+    if (tick % 5 == 0) odometry->add(joints_at(time_s, position_rad));
+  }
+  ASSERT_TRUE(odometry->estimate());
+  EXPECT_LT(odometry->estimate()->T_odom_body.position.norm(), 0.1);
+}
+
 }  // namespace
 }  // namespace patrol::stack::odometry_source_test
