@@ -15,6 +15,15 @@ std::optional<Eigen::Vector2d> degenerate_direction(const Eigen::Matrix3d& infor
   return Eigen::Vector2d(axes.vectors.col(0));
 }
 
+Eigen::Vector3d determined_offset(const Eigen::Vector3d& offset, const Eigen::Matrix3d& information,
+                                  double min_eigenvalue_ratio) {
+  const auto degenerate = degenerate_direction(information, min_eigenvalue_ratio);
+  if (!degenerate) return offset;
+  Eigen::Vector3d determined = offset;
+  determined.head<2>() -= degenerate->dot(offset.head<2>()) * *degenerate;
+  return determined;
+}
+
 Eigen::Matrix3d project_out(const Eigen::Matrix3d& information, const Eigen::Vector2d& direction) {
   Eigen::Matrix3d rest = Eigen::Matrix3d::Identity();
   rest.topLeftCorner<2, 2>() -= direction * direction.transpose();

@@ -33,7 +33,7 @@ GraphSlam::GraphSlam(const GraphSlamSettings& settings)
 }
 
 SlamUpdate GraphSlam::update(const LevelScan& input_scan, const Pose2& T_odom_body) {
-  const LevelScan without_beams{.stamp = input_scan.stamp, .beams = {}};
+  const LevelScan without_beams{.stamp = input_scan.stamp, .tilt_rad = input_scan.tilt_rad, .beams = {}};
   const LevelScan& scan = input_scan.tilt_rad <= settings_.max_tilt_rad ? input_scan : without_beams;
   const TrackedScan tracked = tracker_.update(scan, T_odom_body);
   if (tracked.is_keyframe) add_keyframe(tracked);

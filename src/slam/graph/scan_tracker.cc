@@ -19,23 +19,15 @@ constexpr double kStudentDegreesOfFreedom = 4.0;
 /// Decay per scan of the inflated odometry variance, after odometry contradicted a match.
 constexpr double kVarianceScaleDecay = 0.8;
 constexpr double kMaxVarianceScale = 400.0;
-/// Along a direction with less information than this fraction of the best one, a match is not evidence against
-/// odometry.
+/// Along a direction with less information than this fraction of the best one, a match is no evidence against odometry.
 constexpr double kMinEvidenceRatio = 0.02;
-/// Squared Mahalanobis distance from the odometry prediction above which a match contradicts odometry.
-constexpr double kContradiction = 16.0;
+/// Squared Mahalanobis distance from the odometry prediction above which a match contradicts odometry; near slopes,
+/// where wheels slip, above which a match that is worse than usual is one with the ground.
+constexpr double kContradiction = 16.0, kGroundContradiction = 100.0;
 /// Number of points of a scan that can have independent errors.
 constexpr double kIndependentPoints = 45.0;
-/// Search over possible motions: time between scans, at least because stamps of logs jitter and at most; margins.
-constexpr double kMinSearch_s = 0.4, kMaxSearch_s = 0.7, kSearchMargin_m = 0.1, kSearchMarginRad = 0.05;
-/// Search around the prediction by odometry after a gap between scans, in its standard deviations and at most.
-constexpr double kGapSearchStd = 3.0, kMaxGapSearch_m = 3.0, kMaxGapSearchRad = 0.8;
-/// Standard deviation of a motion without odometry, as a fraction of the possible motion.
-constexpr double kPossibleMotionStd = 0.3;
 /// Motion during which odometry does not change, so that it is constant.
 constexpr double kConstantMotion_m = 0.3, kConstantMotionRad = 0.3;
-constexpr double kMinSearchScore = 0.2;
-constexpr int kSearchLevels = 4;
 /// Tracks of sparse scans: number at most, log probability relative to the best one at least, and weight of the earlier
 /// scans per scan.
 constexpr std::size_t kMaxTracks = 8;
@@ -47,13 +39,10 @@ double log_student_t(const PoseGaussian& prediction, const Pose2& pose) {
          std::log1p(offset.dot(prediction.covariance.inverse() * offset) / kStudentDegreesOfFreedom);
 }
 
-/// Returns the difference of two poses without its part along the direction that a match does not determine.
-Eigen::Vector3d determined_offset(const Eigen::Vector3d& offset, const Eigen::Matrix3d& match_information) {
-  const auto degenerate = degenerate_direction(match_information, kMinEvidenceRatio);
-  if (!degenerate) return offset;
-  Eigen::Vector3d determined = offset;
-  determined.head<2>() -= degenerate->dot(offset.head<2>()) * *degenerate;
-  return determined;
+/// Squared Mahalanobis distance of a pose from the prediction, along the directions that the match determines.
+double squared_contradiction(const PoseGaussian& prediction, const Pose2& pose, const MatchResult& match) {
+  const auto offset = determined_offset(prediction.residual_to_mean(pose), match.information, kMinEvidenceRatio);
+  return offset.dot(prediction.covariance.inverse() * offset);
 }
 
 bool is_distinct(const Pose2& a, const Pose2& b) {
@@ -84,6 +73,7 @@ TrackedScan ScanTracker::update(const LevelScan& scan, const Pose2& T_odom_stamp
             .is_sparse = num_hits(scan) < settings_.min_hits,
             .is_odometry_constant = is_odometry_constant_ && is_same(T_odom_last_, T_odom_body)};
   step.is_gap = is_gap(step);
+  uneven_ground_.add(scan, step.T_last_odom.position().norm());
   const bool can_be_matched = maps_.older().has_surface();
   if (!step.is_sparse) tracks_.resize(1);
   const std::vector<Branch> branches =
@@ -141,15 +131,6 @@ PoseGaussian ScanTracker::predict(const Track& track, const Step& step) const {
   return prediction;
 }
 
-// At constant velocity, with a covariance that contains all possible motions.
-PoseGaussian ScanTracker::predict_without_odometry(const Track& track, const Step& step) const {
-  const double seconds = std::clamp(step.seconds, 0.0, kMaxSearch_s),
-               std_m = kPossibleMotionStd * settings_.max_speed_mps * std::max(seconds, kMinSearch_s),
-               std_rad = kPossibleMotionStd * settings_.max_turn_rate_radps * std::max(seconds, kMinSearch_s);
-  return {.mean = track.T_local_last * motion_as_before(track, step),
-          .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
-}
-
 Pose2 ScanTracker::motion_as_before(const Track& track, const Step& step) const {
   return scaled_motion(track.T_last_now, last_step_s_ > 1e-3 ? std::clamp(step.seconds / last_step_s_, 0.0, 2.0) : 1.0);
 }
@@ -178,10 +159,10 @@ std::vector<ScanTracker::Branch> ScanTracker::continue_tracks(const std::vector<
     const PoseGaussian prediction = predict(tracks_[t], step);
     const Hypothesis by_odometry = match_by_odometry(points, prediction);
     const Hypothesis best = match_by_alternatives(tracks_[t], by_odometry, points, step, prediction);
-    branches.push_back({.track = t, .prediction = prediction, .best = best});
+    branches.push_back(to_branch(t, step, best, prediction));
     if (!step.is_sparse) return branches;
     if (is_distinct(best.T_local_body, by_odometry.T_local_body))
-      branches.push_back({.track = t, .prediction = prediction, .best = by_odometry});
+      branches.push_back(to_branch(t, step, by_odometry, prediction));
   }
   for (Branch& branch : branches) branch.score = score(tracks_[branch.track], branch, points);
   std::stable_sort(branches.begin(), branches.end(),
@@ -236,53 +217,23 @@ ScanTracker::Hypothesis ScanTracker::match_by_alternatives(const Track& track, c
   return best.match ? without_moving_objects(best, points, prediction) : best;
 }
 
-// At the end of the map, few points are in known cells, and a pose at which all points match is a wrong one.
-ScanTracker::Hypothesis ScanTracker::match_after_gap(const Hypothesis& by_odometry,
-                                                     const std::vector<MatchPoint>& points,
-                                                     const PoseGaussian& prediction) {
-  const auto is_likely = [&](const Hypothesis& hypothesis) {
-    return hypothesis.match && usual_.has_usual_points(*hypothesis.match, hypothesis.log_likelihoods);
-  };
-  if (is_likely(by_odometry)) return by_odometry;
-  const double variance_m2 = std::max(prediction.covariance(0, 0), prediction.covariance(1, 1));
-  const SearchWindow window{
-      .T_map_center = prediction.mean,
-      .half_width_m = std::min(kMaxGapSearch_m, kGapSearchStd * std::sqrt(variance_m2)) + kSearchMargin_m,
-      .half_angle_rad =
-          std::min(kMaxGapSearchRad, kGapSearchStd * std::sqrt(prediction.covariance(2, 2))) + kSearchMarginRad};
-  if (const std::optional<Pose2> found = search(window, points)) {
-    Hypothesis other = match_from(*found, points, prediction, by_odometry);
-    if (other.match) evaluate(other, points);
-    if (is_likely(other)) return other;
-  }
-  return by_odometry;
-}
-
-SearchWindow ScanTracker::possible_motions(const Pose2& T_local_last, double seconds) const {
-  const double limited_s = std::clamp(seconds, kMinSearch_s, kMaxSearch_s);
-  return {.T_map_center = T_local_last,
-          .half_width_m = settings_.max_speed_mps * limited_s + kSearchMargin_m,
-          .half_angle_rad = settings_.max_turn_rate_radps * limited_s + kSearchMarginRad};
-}
-
-bool ScanTracker::is_gap(const Step& step) const {
-  const SearchWindow searched = possible_motions({}, step.seconds);
-  const double moved_m = step.T_last_odom.position().norm();
-  return !step.is_odometry_constant && moved_m > searched.half_width_m &&
-         moved_m <= settings_.max_speed_mps * step.seconds;
-}
-
-std::optional<Pose2> ScanTracker::search(const SearchWindow& window, const std::vector<MatchPoint>& points) {
-  if (!pyramid_) pyramid_.emplace(maps_.older(), 2.0 * settings_.resolution_m, kSearchLevels);
-  const auto found =
-      search_window(*pyramid_, positions_of(points, settings_.matching.search_points), window, kMinSearchScore);
-  return found ? std::optional(found->T_map_points) : std::nullopt;
+// The outline of the ground moves with the robot, so a match with it contradicts odometry. The scale factor of the
+// odometry variance is left out: a first wrong match would increase it for the next.
+ScanTracker::Branch ScanTracker::to_branch(std::size_t track, const Step& step, const Hypothesis& best,
+                                           const PoseGaussian& prediction) const {
+  Branch branch{.track = track, .prediction = prediction, .best = best};
+  if (!best.match || !uneven_ground_.is_near()) return branch;
+  const double scale = step.is_odometry_constant ? 1.0 : tracks_[track].odometry_variance_scale;
+  if (scale * squared_contradiction(prediction, best.T_local_body, *best.match) > kGroundContradiction &&
+      !usual_.has_usual_points(*best.match, best.log_likelihoods))
+    branch.best = {.T_local_body = prediction.mean};
+  return branch;
 }
 
 // Only the directions that the scan determines are evidence: along a smooth corridor any pose matches.
 double ScanTracker::updated_variance_scale(double scale, const PoseGaussian& prediction, const Hypothesis& best) {
   Eigen::Vector3d offset = prediction.residual_to_mean(best.T_local_body);
-  if (best.match) offset = determined_offset(offset, best.match->information);
+  if (best.match) offset = determined_offset(offset, best.match->information, kMinEvidenceRatio);
   // 3 on average if the variance is correct
   const double squared = offset.dot(prediction.covariance.inverse() * offset);
   return std::clamp(std::max(kVarianceScaleDecay * scale, scale * squared / 3.0), 1.0, kMaxVarianceScale);
@@ -353,7 +304,7 @@ void ScanTracker::evaluate(Hypothesis& hypothesis, const std::vector<MatchPoint>
 bool ScanTracker::is_determined_by_scan(const Hypothesis& a, const Hypothesis& b) {
   const Eigen::Vector3d offset(a.T_local_body.x - b.T_local_body.x, a.T_local_body.y - b.T_local_body.y,
                                wrap_angle(a.T_local_body.yaw - b.T_local_body.yaw));
-  const Eigen::Vector3d determined = determined_offset(offset, a.match->information);
+  const Eigen::Vector3d determined = determined_offset(offset, a.match->information, kMinEvidenceRatio);
   return is_distinct({determined.x(), determined.y(), determined.z()}, {});
 }
 
@@ -372,9 +323,7 @@ bool ScanTracker::is_better(const Hypothesis& a, const Hypothesis& b, const std:
 ScanTracker::Hypothesis ScanTracker::without_moving_objects(const Hypothesis& best,
                                                             const std::vector<MatchPoint>& points,
                                                             const PoseGaussian& prediction) const {
-  const Eigen::Vector3d offset =
-      determined_offset(prediction.residual_to_mean(best.T_local_body), best.match->information);
-  if (offset.dot(prediction.covariance.inverse() * offset) < kContradiction) return best;
+  if (squared_contradiction(prediction, best.T_local_body, *best.match) < kContradiction) return best;
   const SectorGains gains(points, best.log_likelihoods,
                           point_log_likelihoods(maps_.older(), points, prediction.mean, settings_.matching),
                           usual_.unknown_log_likelihood());

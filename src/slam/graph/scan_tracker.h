@@ -14,6 +14,7 @@
 #include "slam/graph/scan_tracker_settings.h"
 #include "slam/graph/scans_since_keyframe.h"
 #include "slam/graph/tracker_maps.h"
+#include "slam/graph/uneven_ground.h"
 #include "slam/graph/usual_match.h"
 #include "slam/motion_model.h"
 #include "slam/scan_matcher.h"
@@ -60,6 +61,9 @@ struct TrackedScan {
 ///
 /// Robust against moving objects: a match that contradicts odometry needs the majority of the sectors of bearings that
 /// distinguish the two poses. Sectors of a rejected match are left out.
+///
+/// Robust against ground in the scans (uneven_ground.h): near slopes, a match that strongly contradicts odometry is
+/// used only if as many points match as usual. Otherwise the pose follows odometry.
 class ScanTracker {
  public:
   explicit ScanTracker(const ScanTrackerSettings& settings);
@@ -70,13 +74,13 @@ class ScanTracker {
   template <typename Archive>
   void serialize_state(Archive& archive) {
     archive(maps_, stamp_, T_odom_last_, T_local_keyframe_, tracks_, last_step_s_, T_local_constant_,
-            is_odometry_constant_, delay_, correction_, usual_, scans_since_keyframe_, pyramid_);
+            is_odometry_constant_, delay_, correction_, usual_, uneven_ground_, scans_since_keyframe_, pyramid_);
   }
 
  private:
   struct Hypothesis {
     Pose2 T_local_body;
-    std::optional<MatchResult> match;
+    std::optional<MatchResult> match = {};
     double log_prior = 0.0;
     std::vector<double> log_likelihoods = {};  ///< [point]; empty: not computed
   };
@@ -126,6 +130,8 @@ class ScanTracker {
   Hypothesis match_by_alternatives(const Track& track, const Hypothesis& by_odometry,
                                    const std::vector<MatchPoint>& points, const Step& step,
                                    const PoseGaussian& prediction);
+  /// Continues a track by a match, or by odometry if the match may be one with ground.
+  Branch to_branch(std::size_t track, const Step& step, const Hypothesis& best, const PoseGaussian& prediction) const;
   Hypothesis match_after_gap(const Hypothesis& by_odometry, const std::vector<MatchPoint>& points,
                              const PoseGaussian& prediction);
   SearchWindow possible_motions(const Pose2& T_local_last, double seconds) const;
@@ -160,6 +166,7 @@ class ScanTracker {
   OdometryDelay delay_;
   OdometryCorrection correction_;
   UsualMatch usual_;
+  UnevenGround uneven_ground_;
   ScansSinceKeyframe scans_since_keyframe_;
   std::optional<LikelihoodPyramid> pyramid_;  ///< of the older map; none: not needed since it has changed
 };

@@ -37,6 +37,13 @@ TEST(DegenerateDirection, IsNoneWhereAnEndWallConstrainsThePose) {
   EXPECT_FALSE(degenerate_direction(Eigen::Matrix3d::Zero(), 0.02));
 }
 
+TEST(DeterminedOffset, IsWithoutThePartAlongAWallThatHasNoEnd) {
+  const Eigen::Matrix3d sides = wall(M_PI / 2, {0.0, 1.0}, 100) + wall(M_PI / 2, {0.0, -1.0}, 100);
+  const Eigen::Vector3d offset(0.5, 0.1, 0.02);
+  EXPECT_LT((determined_offset(offset, sides, 0.02) - Eigen::Vector3d(0.0, 0.1, 0.02)).norm(), 1e-9);
+  EXPECT_EQ(determined_offset(offset, sides + wall(0.0, {5.0, 0.0}, 50), 0.02), offset);
+}
+
 TEST(ProjectOut, NothingIsLeftAlongItAndAllAcross) {
   const Eigen::Matrix3d information = wall(0.3, {4.0, 1.0}, 30) + wall(1.7, {-1.0, 3.0}, 20);
   const Eigen::Vector2d along(std::cos(0.4), std::sin(0.4)), across(-along.y(), along.x());

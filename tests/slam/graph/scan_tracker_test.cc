@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/slam/graph/office_world.h"
+#include "tests/slam/graph/uneven_yard.h"
 #include "tests/support/pose_near.h"
 
 namespace patrol::slam::scan_tracker_test {
@@ -207,6 +208,27 @@ TEST(ScanTracker, ACarThatDrivesOffAheadCostsNoMoreThanTenCentimetersIn45Meters)
     worst_m = std::max(worst_m, (tracked.T_local_body.position() - Eigen::Vector2d(x, 0.0)).norm());
   }
   EXPECT_LT(worst_m, 0.1);
+}
+
+// A third of the scans has no beams, in gaps of up to 10 s, and others have ground in front of the robot.
+TEST(ScanTracker, OnSlopesWithGroundInTheScansTheErrorIsBelowAThirdOfThatOfOdometry) {
+  ScanTrackerSettings settings;
+  settings.motion = {.longitudinal_std_m_per_m = 0.03, .lateral_std_m_per_m = 0.02};
+  settings.matching.point_angle_std_rad = 0.002;
+  settings.keyframe_distance_m = 0.5;
+  settings.initial_keyframes = 25;
+  for (const std::uint64_t seed : {6U, 11U, 12U}) {
+    const test::UnevenYard yard(seed);
+    const std::vector<test::DriveStep> drive = test::drive_in_uneven_yard(seed);
+    ScanTracker tracker(settings);
+    std::vector<TrackedScan> tracked, by_odometry;
+    for (std::size_t k = 0; k < drive.size(); ++k) {
+      tracked.push_back(tracker.update(yard.scan(drive[k].T_world_body, drive[k].stamp, k), drive[k].T_odom_body));
+      by_odometry.push_back({.T_local_body = drive[k].T_odom_body});
+    }
+    const double error_m = worst_error_m(drive, tracked), odometry_m = worst_error_m(drive, by_odometry);
+    EXPECT_LT(error_m, odometry_m / 3.0) << seed;
+  }
 }
 
 TEST(ScanTracker, KeyframesComeEveryQuarterMeterAndSubmapsEveryThirtyKeyframes) {
