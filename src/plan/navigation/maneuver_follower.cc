@@ -119,7 +119,11 @@ VelocityCommand ManeuverFollower::command(const Costmap& costmap, const Pose2& T
   // The body's origin is beside the turn center, so that it also moves sideways.
   VelocityCommand motion = command;
   motion.vy_mps = -T_body_center_.x * command.yaw_rate_radps;
-  return is_motion_safe(costmap, T_map_body, motion, kSafe_s) ? command : VelocityCommand{};
+  // The motion ends at the next stop. On the way to a stop within the route margin it only has to be free of collision.
+  const double stop_clearance_m = costmap.clearance_m(maneuver_[end_of_part()].T_map_center * T_center_body_);
+  const double min_clearance_m = stop_clearance_m > costmap.settings().route_margin_m ? kMinPassable_m : 0.0;
+  const double time_s = std::min(kSafe_s, to_stop_m() / speed_mps);
+  return is_motion_safe(costmap, T_map_body, motion, time_s, min_clearance_m) ? command : VelocityCommand{};
 }
 
 bool ManeuverFollower::is_blocked_at(const Costmap& costmap, double along_m) const {
