@@ -54,6 +54,10 @@ struct End {
   double min_clearance_m = 0.0;  ///< clearance that suffices near this end
 };
 
+bool is_near_end(const Pose2& T_map_center, const End& end) {
+  return (T_map_center.position() - end.p_map_center).norm() < kNearEnd_m;
+}
+
 std::uint64_t key_of(const Pose2& pose, bool is_reverse) {
   const auto cell = [](double value_m) { return static_cast<std::int64_t>(std::floor(value_m / kCell_m)); };
   const double turns = pose.yaw / (2.0 * std::numbers::pi);
@@ -73,20 +77,25 @@ class Search {
         T_center_body_(T_center_body),
         radius_m_(radius_m),
         T_map_goal_(T_map_goal),
-        ends_{{{.p_map_center = T_map_start.position(), .min_clearance_m = clearance_m(T_map_start) - kTolerance_m},
-               {.p_map_center = T_map_goal.position(),
-                .min_clearance_m = std::max(0.0, clearance_m(T_map_goal) - kTolerance_m)}}} {}
+        ends_{start_end(T_map_start), goal_end(T_map_goal)} {}
 
   ManeuverResult run(const Pose2& T_map_start, bool is_reversing);
 
  private:
   double clearance_m(const Pose2& T_map_center) const { return costmap_.clearance_m(T_map_center * T_center_body_); }
+  /// Below that of a safe motion, the robot cannot reduce its clearance.
+  End start_end(const Pose2& T_map_center) const {
+    const double here_m = clearance_m(T_map_center);
+    return {T_map_center.position(), std::min(here_m, std::max(kMinPassable_m, here_m - kTolerance_m))};
+  }
+  End goal_end(const Pose2& T_map_center) const {
+    return {T_map_center.position(), std::max(0.0, clearance_m(T_map_center) - kTolerance_m)};
+  }
   /// Returns whether the clearance exceeds the route margin, or suffices near start or goal.
   bool is_free(const Pose2& T_map_center) const {
     if (costmap_.is_clear(T_map_center * T_center_body_, costmap_.settings().route_margin_m)) return true;
     return std::ranges::any_of(ends_, [&](const End& end) {
-      return (T_map_center.position() - end.p_map_center).norm() < kNearEnd_m &&
-             clearance_m(T_map_center) >= end.min_clearance_m;
+      return is_near_end(T_map_center, end) && clearance_m(T_map_center) >= end.min_clearance_m;
     });
   }
   std::optional<double> cost_of(const Pose2& T_map_from, const Arc& arc, bool is_reverse) const;
@@ -123,8 +132,12 @@ std::optional<double> Search::cost_of(const Pose2& T_map_from, const Arc& arc, b
 }
 
 void Search::add(const Pose2& T_map_center, bool is_reverse, double cost_m, int parent, const Arc& arc) {
-  const double remaining_m = to_goal_->at(T_map_center.position());
-  if (!std::isfinite(remaining_m)) return;
+  double remaining_m = to_goal_->at(T_map_center.position());
+  if (!std::isfinite(remaining_m)) {
+    if (!is_near_end(T_map_center, ends_.front())) return;
+    // Cells around a start in collision are lethal: they have no distance, but the robot may leave them.
+    remaining_m = (T_map_center.position() - T_map_goal_.position()).norm();
+  }
   const auto [known, is_new] = known_.try_emplace(key_of(T_map_center, is_reverse), static_cast<int>(states_.size()));
   if (!is_new) {
     if (states_[static_cast<std::size_t>(known->second)].cost_m <= cost_m) return;

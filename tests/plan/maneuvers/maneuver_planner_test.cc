@@ -1,6 +1,7 @@
 #include "plan/maneuvers/maneuver_planner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -64,11 +65,23 @@ TEST(ManeuverPlanner, NearAGoalWithinTheRouteMarginTheClearanceOfTheGoalSuffices
 
 TEST(ManeuverPlanner, NearAStartWithinTheRouteMarginTheClearanceOfTheStartSuffices) {
   const Costmap costmap = make_costmap_with_line();
-  for (const double clearance_m : {-0.02, 0.02}) {
-    const ManeuverResult result = plan(costmap, beside_line(costmap, -8.0, clearance_m), {8.0, 5.0, 0.0});
-    ASSERT_EQ(result.status, PlanStatus::kFound) << clearance_m;
-    EXPECT_GT(min_clearance_m(costmap, result, false), clearance_m - 0.011);
+  const Pose2 facing{-8.0, 1.0 - costmap.clearance_m({-8.0, 1.0, -M_PI / 2.0}) - 0.02, -M_PI / 2.0};
+  for (const Pose2& start : {facing, beside_line(costmap, -8.0, 0.03)}) {
+    const ManeuverResult result = plan(costmap, start, {8.0, 5.0, 0.0});
+    ASSERT_EQ(result.status, PlanStatus::kFound) << start.vector().transpose();
+    EXPECT_GE(min_clearance_m(costmap, result, false), costmap.clearance_m(start) - 0.01);
   }
+}
+
+// For example in the trace of a pedestrian, which the map has since its last update.
+TEST(ManeuverPlanner, AStartInCollisionInLethalCellsIsLeft) {
+  CostmapSettings settings;
+  settings.keep_out_margin_m = 0.4;
+  Costmap costmap(settings, Footprint(make_cart().footprint_m, 2), {{{-0.15, -0.01}, {-0.15, 0.01}}});
+  costmap.include({0.0, 0.0}, 15.0);
+  ASSERT_EQ(costmap.cost_at({0.0, 0.0}), kLethalCost);
+  ASSERT_LT(costmap.clearance_m({}), -0.2);
+  EXPECT_EQ(plan(costmap, {}, {8.0, 0.0, 0.0}).status, PlanStatus::kFound);
 }
 
 }  // namespace
