@@ -263,11 +263,11 @@ class NoRoute(TunnelRun):
         self.assertEqual(told, [("goal_failed", "goal_1"), ("goal_reached", "goal_2"), ("mission_failed", "")])
 
     def test_a_goal_inside_the_wall(self):
-        self.assert_given_up(self.drive_to(-12.0, 2.87), "Goal pose is in collision.")
+        self.assert_given_up(self.drive_to(-12.0, 2.87), "Goal pose is blocked: obstacle, keep-out line or unknown space.")
 
     def test_a_goal_outside_the_tunnel(self):
         """The map, complete as it is, knows nothing there; the portal is open, and outside is no way to it."""
-        self.assert_given_up(self.drive_to(-12.0, 3.3), "Goal pose is in collision.")
+        self.assert_given_up(self.drive_to(-12.0, 3.3), "Goal pose is blocked: obstacle, keep-out line or unknown space.")
 
     def test_a_goal_behind_a_wall_that_the_map_shows(self):
         """From side to side of the tunnel, 20 m in. Round its outside, where the map knows nothing, there is no way either."""

@@ -60,13 +60,13 @@ StationPose standing(const RobotDescription& robot, double pitch_rad = 0.0) {
           .T_map_body = {}};
 }
 
-/// Whether a goal ahead of the robot is in collision in the costmap.
-bool is_goal_in_collision(MotionExecutor& executor, double x_m) {
+/// Whether a goal ahead of the robot is blocked in the costmap.
+bool is_goal_blocked(MotionExecutor& executor, double x_m) {
   const Task task{.motion = Motion::kNavigate, .goal = NavigationGoal{.T_map_body = {x_m, 0.0, 0.0}}, .inspection = {}};
   StackOutput output;
   executor.step(from_seconds(2.0), task, {}, {}, output);
   for (const Event& event : all_of<Event>(output.take_messages())) {
-    if (event.text == "Goal pose is in collision.") return true;
+    if (event.text == "Goal pose is blocked: obstacle, keep-out line or unknown space.") return true;
   }
   return false;
 }
@@ -83,7 +83,7 @@ bool leaves_arc(double range_m, double pitch_rad = 0.0) {
                                  .range_max_m = 4.0,
                                  .range_m = static_cast<float>(range_m)},
                  standing(robot, pitch_rad));
-  return is_goal_in_collision(executor, 0.3 + range_m);
+  return is_goal_blocked(executor, 0.3 + range_m);
 }
 
 // The range to level ground is that of the lower edge of the cone; from 0.85 of it on, an echo may be the ground. With
@@ -105,7 +105,7 @@ TEST(MotionExecutor, ABeamSeventyFiveCentimetersAboveTheGroundIsAnObstacle) {
   MotionExecutor executor(StackSettings{}, robot, Route{}, 1);
   for (const double time_s : {1.0, 1.2})
     executor.add(scene.look(pose.T_level_body * robot.T_body("depth_camera"), from_seconds(time_s)), pose);
-  EXPECT_TRUE(is_goal_in_collision(executor, 0.85));
+  EXPECT_TRUE(is_goal_blocked(executor, 0.85));
 }
 
 }  // namespace

@@ -22,19 +22,19 @@
 namespace patrol::plan {
 namespace {
 
-constexpr double kPoseStep_m = 0.1;   // spacing of checked and returned poses
-constexpr double kCell_m = 0.25;      // positions closer than this are one state
-constexpr int kNumHeadings = 72;      // headings within 5 degrees are one state
-constexpr int kShotPeriod = 8;        // one of this many expanded states tries to reach the goal by a Dubins path
-constexpr double kNear_m = 12.0;      // distance from the goal within which every state tries
-constexpr double kNearStart_m = 2.0;  // distance from the start within which its clearance is enough
+constexpr double kPoseStep_m = 0.1;    // spacing of checked and returned poses
+constexpr double kCell_m = 0.25;       // positions closer than this are one state
+constexpr int kNumHeadings = 72;       // headings within 5 degrees are one state
+constexpr int kShotPeriod = 8;         // one of this many expanded states tries to reach the goal by a Dubins path
+constexpr double kNear_m = 12.0;       // distance from the goal within which every state tries
+constexpr double kNearEnd_m = 2.0;     // distance from start or goal within which the clearance of that end is enough
+constexpr double kTolerance_m = 0.01;  // loss of that clearance by interpolation and by the swing of the rear
 constexpr int kNoParent = -1;
 
 struct State {
   Pose2 T_map_center;
   bool is_reverse = false;
   double cost_m = 0.0;
-  double from_start_m = 0.0;
   int parent = kNoParent;
   Arc arc;  ///< from the parent
   bool is_closed = false;
@@ -47,6 +47,16 @@ struct Shot {
   std::vector<Arc> arcs;
   double cost_m = std::numeric_limits<double>::infinity();
 };
+
+/// Start or goal.
+struct End {
+  Eigen::Vector2d p_map_center;
+  double min_clearance_m = 0.0;  ///< clearance that suffices near this end
+};
+
+bool is_near_end(const Pose2& T_map_center, const End& end) {
+  return (T_map_center.position() - end.p_map_center).norm() < kNearEnd_m;
+}
 
 std::uint64_t key_of(const Pose2& pose, bool is_reverse) {
   const auto cell = [](double value_m) { return static_cast<std::int64_t>(std::floor(value_m / kCell_m)); };
@@ -67,23 +77,29 @@ class Search {
         T_center_body_(T_center_body),
         radius_m_(radius_m),
         T_map_goal_(T_map_goal),
-        margin_m_(costmap.settings().route_margin_m),
-        start_clearance_m_(clearance_m(T_map_start)) {}
+        ends_{start_end(T_map_start), goal_end(T_map_goal)} {}
 
   ManeuverResult run(const Pose2& T_map_start, bool is_reversing);
 
  private:
   double clearance_m(const Pose2& T_map_center) const { return costmap_.clearance_m(T_map_center * T_center_body_); }
-  bool is_free(const Pose2& T_map_center, double from_start_m) const {
-    if (costmap_.is_clear(T_map_center * T_center_body_, margin_m_)) return true;
-    return from_start_m < kNearStart_m && clearance_m(T_map_center) > start_clearance_m_ - 0.01;
+  /// Below that of a safe motion, the robot cannot reduce its clearance.
+  End start_end(const Pose2& T_map_center) const {
+    const double here_m = clearance_m(T_map_center);
+    return {T_map_center.position(), std::min(here_m, std::max(kMinPassable_m, here_m - kTolerance_m))};
   }
-  /// Returns whether no maneuver from the start can end at the goal, for lack of clearance at the goal.
-  bool is_goal_blocked(const Pose2& T_map_start) const {
-    return !is_free(T_map_goal_, (T_map_goal_.position() - T_map_start.position()).norm());
+  End goal_end(const Pose2& T_map_center) const {
+    return {T_map_center.position(), std::max(0.0, clearance_m(T_map_center) - kTolerance_m)};
   }
-  std::optional<double> cost_of(const Pose2& T_map_from, double from_start_m, const Arc& arc, bool is_reverse) const;
-  void add(const Pose2& T_map_center, bool is_reverse, double cost_m, double from_start_m, int parent, const Arc& arc);
+  /// Returns whether the clearance exceeds the route margin, or suffices near start or goal.
+  bool is_free(const Pose2& T_map_center) const {
+    if (costmap_.is_clear(T_map_center * T_center_body_, costmap_.settings().route_margin_m)) return true;
+    return std::ranges::any_of(ends_, [&](const End& end) {
+      return is_near_end(T_map_center, end) && clearance_m(T_map_center) >= end.min_clearance_m;
+    });
+  }
+  std::optional<double> cost_of(const Pose2& T_map_from, const Arc& arc, bool is_reverse) const;
+  void add(const Pose2& T_map_center, bool is_reverse, double cost_m, int parent, const Arc& arc);
   void expand(int index);
   void shoot(int index);
   Maneuver trace(const Shot& shot) const;
@@ -94,7 +110,7 @@ class Search {
   double radius_m_;
   Pose2 T_map_goal_;
   std::optional<GoalDistance> to_goal_;
-  double margin_m_, start_clearance_m_;
+  std::array<End, 2> ends_;
   std::vector<State> states_;
   std::unordered_map<std::uint64_t, int> known_;  ///< index of the best state with a key
   using Entry = std::pair<double, int>;           ///< estimated total cost, state
@@ -103,35 +119,33 @@ class Search {
 };
 
 /// Returns the cost of an arc; none if it is not free.
-std::optional<double> Search::cost_of(const Pose2& T_map_from, double from_start_m, const Arc& arc,
-                                      bool is_reverse) const {
+std::optional<double> Search::cost_of(const Pose2& T_map_from, const Arc& arc, bool is_reverse) const {
   const int steps = std::max(1, static_cast<int>(std::ceil(arc.length_m / kPoseStep_m - 1e-9)));
   const double step_m = arc.length_m / steps, direction = is_reverse ? -1.0 : 1.0;
   double cost_m = 0.0;
   for (int step = 1; step <= steps; ++step) {
     const Pose2 pose = along_arc(T_map_from, direction * arc.curvature_per_m, direction * step * step_m);
-    if (!is_free(pose, from_start_m + step * step_m)) return std::nullopt;
+    if (!is_free(pose)) return std::nullopt;
     cost_m += step_m * travel_weight(costmap_, pose.position(), settings_.cost_weight);
   }
   return (is_reverse ? settings_.reverse_weight : 1.0) * cost_m;
 }
 
-void Search::add(const Pose2& T_map_center, bool is_reverse, double cost_m, double from_start_m, int parent,
-                 const Arc& arc) {
-  const double remaining_m = to_goal_->at(T_map_center.position());
-  if (!std::isfinite(remaining_m)) return;
+void Search::add(const Pose2& T_map_center, bool is_reverse, double cost_m, int parent, const Arc& arc) {
+  double remaining_m = to_goal_->at(T_map_center.position());
+  if (!std::isfinite(remaining_m)) {
+    if (!is_near_end(T_map_center, ends_.front())) return;
+    // Cells around a start in collision are lethal: they have no distance, but the robot may leave them.
+    remaining_m = (T_map_center.position() - T_map_goal_.position()).norm();
+  }
   const auto [known, is_new] = known_.try_emplace(key_of(T_map_center, is_reverse), static_cast<int>(states_.size()));
   if (!is_new) {
     if (states_[static_cast<std::size_t>(known->second)].cost_m <= cost_m) return;
     states_[static_cast<std::size_t>(known->second)].is_closed = true;  // replaced
     known->second = static_cast<int>(states_.size());
   }
-  states_.push_back({.T_map_center = T_map_center,
-                     .is_reverse = is_reverse,
-                     .cost_m = cost_m,
-                     .from_start_m = from_start_m,
-                     .parent = parent,
-                     .arc = arc});
+  states_.push_back(
+      {.T_map_center = T_map_center, .is_reverse = is_reverse, .cost_m = cost_m, .parent = parent, .arc = arc});
   open_.emplace(cost_m + settings_.greediness * remaining_m, static_cast<int>(states_.size()) - 1);
 }
 
@@ -142,10 +156,10 @@ void Search::expand(int index) {
     const double direction = is_reverse ? -1.0 : 1.0;
     for (const double part : {0.0, 0.5, -0.5, 1.0, -1.0}) {
       const Arc arc{.curvature_per_m = part / radius_m_, .length_m = settings_.step_m};
-      const std::optional<double> cost_m = cost_of(from.T_map_center, from.from_start_m, arc, is_reverse);
+      const std::optional<double> cost_m = cost_of(from.T_map_center, arc, is_reverse);
       if (!cost_m) continue;
       const Pose2 to = along_arc(from.T_map_center, direction * arc.curvature_per_m, direction * arc.length_m);
-      add(to, is_reverse, from.cost_m + change_m + *cost_m, from.from_start_m + arc.length_m, index, arc);
+      add(to, is_reverse, from.cost_m + change_m + *cost_m, index, arc);
     }
   }
 }
@@ -160,14 +174,12 @@ void Search::shoot(int index) {
     Shot shot{.from = index, .is_reverse = is_reverse, .arcs = dubins_path(goal, radius_m_), .cost_m = from.cost_m};
     if (is_reverse != from.is_reverse) shot.cost_m += settings_.direction_change_m;
     Pose2 pose = from.T_map_center;
-    double from_start_m = from.from_start_m;
     bool is_possible = true;
     for (const Arc& arc : shot.arcs) {
-      const std::optional<double> cost_m = cost_of(pose, from_start_m, arc, is_reverse);
+      const std::optional<double> cost_m = cost_of(pose, arc, is_reverse);
       is_possible = cost_m && shot.cost_m + *cost_m < best_.cost_m;
       if (!is_possible) break;
       shot.cost_m += *cost_m;
-      from_start_m += arc.length_m;
       const double direction = is_reverse ? -1.0 : 1.0;
       pose = along_arc(pose, direction * arc.curvature_per_m, direction * arc.length_m);
     }
@@ -176,10 +188,9 @@ void Search::shoot(int index) {
 }
 
 ManeuverResult Search::run(const Pose2& T_map_start, bool is_reversing) {
-  if (is_goal_blocked(T_map_start)) return {.status = PlanStatus::kGoalBlocked};
   to_goal_.emplace(costmap_.cost(), T_map_goal_.position(), settings_.cost_weight);
   ManeuverResult result{.num_cells = to_goal_->num_expanded()};
-  add(T_map_start, is_reversing, 0.0, 0.0, kNoParent, {});
+  add(T_map_start, is_reversing, 0.0, kNoParent, {});
   const int max_expanded = 1000 * settings_.max_expanded_thousands;
   while (!open_.empty() && result.num_expanded < max_expanded) {
     const auto [estimate_m, index] = open_.top();

@@ -32,7 +32,8 @@ class ManeuverPlanner {
 
   /// Plans from the pose of the body to a goal. `is_reversing`: direction in which the robot moves now. A goal without
   /// heading (tolerance of pi) takes that of the shortest path. Returns kGoalBlocked without a search if the clearance
-  /// at the goal is at most the route margin. Within 2 m of the start, the clearance of the start suffices.
+  /// at the goal is negative. The clearance of all poses exceeds the route margin, but within 2 m of start or goal the
+  /// clearance of that end suffices, also in lethal cells around the start.
   ManeuverResult plan(const Costmap& costmap, const Pose2& T_map_body, bool is_reversing,
                       const NavigationGoal& goal) const;
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kCorrection_m = 0.6;     // distance over which the errors decay at low speed,
 constexpr double kCorrection_s = 0.6;     // and the additional distance by the speed: steering takes time
+constexpr double kSteering_s = 0.2;       // time in which the wheels turn from straight to one side
 constexpr double kStop_m = 0.02;          // a stop this close to the end of a part is at its end
 constexpr double kMaxLateral_mps2 = 0.8;  // lateral acceleration in curves
 constexpr double kSafe_s = 0.8;           // time for which a command must be safe
@@ -50,6 +51,13 @@ std::size_t ManeuverFollower::end_of_part() const {
   std::size_t end = next_;
   while (end + 1 < maneuver_.size() && maneuver_[end + 1].is_reverse == maneuver_[next_].is_reverse) ++end;
   return end;
+}
+
+double ManeuverFollower::curvature_at(double along_m) const {
+  const std::size_t end = end_of_part();
+  std::size_t i = next_;
+  while (i < end && maneuver_[i].along_m < along_m) ++i;
+  return maneuver_[i].curvature_per_m;
 }
 
 double ManeuverFollower::to_stop_m() const {
@@ -104,9 +112,12 @@ VelocityCommand ManeuverFollower::command(const Costmap& costmap, const Pose2& T
   // The poses are at the ends of their arcs: on the way to `next`, the path still turns by this angle.
   const double turn_rad = next.curvature_per_m * (next.along_m - along_m_);
   const double correction_m = kCorrection_m + kCorrection_s * std::abs(last.vx_mps);
-  const double curvature = std::clamp(next.curvature_per_m - lateral_m / (correction_m * correction_m) -
-                                          2.0 * (heading_rad + turn_rad) / correction_m,
-                                      -max_curvature_per_m_, max_curvature_per_m_);
+  const double feedback_per_m =
+      -lateral_m / (correction_m * correction_m) - 2.0 * (heading_rad + turn_rad) / correction_m;
+  const auto limited = [&](double curvature_per_m) {
+    return std::clamp(curvature_per_m + feedback_per_m, -max_curvature_per_m_, max_curvature_per_m_);
+  };
+  const double curvature = limited(curvature_at(along_m_ + kSteering_s * std::abs(last.vx_mps)));
   const DwaSettings& limits = settings_.local_planner.dwa;
   const double bend_per_m = std::max(std::abs(curvature), 1e-6);
   const double top_mps = std::min({next.is_reverse ? std::max(limits.max_reverse_mps, 0.05) : limits.max_speed_mps,
@@ -116,10 +127,16 @@ VelocityCommand ManeuverFollower::command(const Costmap& costmap, const Pose2& T
   const double speed_mps = std::min(top_mps, std::max(0.1, last_mps + limits.max_acceleration_mps2 * limits.window_s));
   const VelocityCommand command{.vx_mps = next.is_reverse ? -speed_mps : speed_mps,
                                 .yaw_rate_radps = curvature * speed_mps};
-  // The body's origin is beside the turn center, so that it also moves sideways.
+  // Until the wheels have turned, the robot follows the present curvature. The body's origin is beside the turn center,
+  // so that it also moves sideways.
   VelocityCommand motion = command;
-  motion.vy_mps = -T_body_center_.x * command.yaw_rate_radps;
-  return is_motion_safe(costmap, T_map_body, motion, kSafe_s) ? command : VelocityCommand{};
+  motion.yaw_rate_radps = limited(next.curvature_per_m) * speed_mps;
+  motion.vy_mps = -T_body_center_.x * motion.yaw_rate_radps;
+  // The motion ends at the next stop. On the way to a stop within the route margin it only has to be free of collision.
+  const double stop_clearance_m = costmap.clearance_m(maneuver_[end_of_part()].T_map_center * T_center_body_);
+  const double min_clearance_m = stop_clearance_m > costmap.settings().route_margin_m ? kMinPassable_m : 0.0;
+  const double time_s = std::min(kSafe_s, to_stop_m() / speed_mps);
+  return is_motion_safe(costmap, T_map_body, motion, time_s, min_clearance_m) ? command : VelocityCommand{};
 }
 
 bool ManeuverFollower::is_blocked_at(const Costmap& costmap, double along_m) const {

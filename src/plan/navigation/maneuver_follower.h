@@ -12,7 +12,8 @@ namespace patrol::plan {
 /// center, and stops where the direction of travel changes.
 ///
 /// Along the direction of travel, with the lateral error e and the heading error a of a robot on a path of curvature c,
-/// the commanded curvature is c - e / L^2 - 2 a / L: both errors decay over the distance L without oscillation.
+/// the commanded curvature is c - e / L^2 - 2 a / L: both errors decay over the distance L without oscillation. c is
+/// that of the path 0.2 s ahead, because the wheels take time to turn.
 class ManeuverFollower final : public RouteFollower {
  public:
   /// `T_body_center`: turn center in body. `max_curvature_per_m`: of the robot.
@@ -34,6 +35,8 @@ class ManeuverFollower final : public RouteFollower {
   double obstacle_radius_m(const Costmap& costmap) const override;
   /// Returns the index of the last pose with the present direction of travel.
   std::size_t end_of_part() const;
+  /// Returns the curvature of the maneuver at a distance along it, at most at the end of the present part.
+  double curvature_at(double along_m) const;
   double to_stop_m() const;
 
   Pose2 T_body_center_, T_center_body_;

@@ -9,7 +9,7 @@ const char* describe(NavigationFailure failure) {
     case NavigationFailure::kStartBlocked:
       return "Start pose is in collision.";
     case NavigationFailure::kGoalBlocked:
-      return "Goal pose is in collision.";
+      return "Goal pose is blocked: obstacle, keep-out line or unknown space.";
     case NavigationFailure::kNoRoute:
       return "No path to the goal exists.";
     case NavigationFailure::kNotFound:

@@ -19,6 +19,8 @@
 
 namespace patrol::plan {
 
+inline constexpr double kMinPassable_m = 0.02;  ///< clearance of a safe motion
+
 /// Layered costmap in `map`, as in Nav2. Each layer has its own file, this class combines them.
 ///
 ///   StaticMapLayer    occupancy grid of SLAM or of a file;

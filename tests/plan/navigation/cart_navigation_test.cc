@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +101,25 @@ TEST(CartNavigation, AGoalWithoutRoomForTheCartIsReported) {
   const NavigationGoal goal{.T_map_body = {4.4, 0.0, 0.0}, .position_tolerance_m = 0.1, .yaw_tolerance_rad = 0.1};
   const DriveRecord record = drive(navigator, hall, {-6.0, 0.0, 0.0}, goal, 20.0, 0.1, make_cart());
   EXPECT_EQ(record.failure, NavigationFailure::kGoalBlocked);
+}
+
+// Toward a keep-out line, and beside it, where the front of the cart swings out as it straightens.
+TEST(CartNavigation, GoalsWithinTheRouteMarginAreReached) {
+  const RoomWorld hall = make_hall();
+  NavigatorSettings settings = cart_settings();
+  settings.costmap.route_margin_m = 0.08;
+  for (const auto& [yaw, clearance_m] : {std::pair{0.0, 0.005}, {0.0, 0.03}, {0.0, 0.06}, {0.5 * M_PI, 0.06}}) {
+    Navigator navigator(settings, make_cart(), {{{4.0, -9.0}, {4.0, 9.0}}});
+    navigator.set_map(draw_map(hall, -10.5, -10.5, 10.5, 10.5));
+    Pose2 T_map_goal{2.0, 0.0, yaw};
+    for (int i = 0; i < 3; ++i) T_map_goal.x += navigator.costmap().clearance_m(T_map_goal) - clearance_m;
+    ASSERT_NEAR(navigator.costmap().clearance_m(T_map_goal), clearance_m, 1e-3);
+    const NavigationGoal goal{
+        .T_map_body = T_map_goal, .position_tolerance_m = 0.08, .yaw_tolerance_rad = 3.0 * kDegree};
+    const DriveRecord record = drive(navigator, hall, {-6.0, -3.0, 0.0}, goal, 60.0, 0.1, make_cart());
+    EXPECT_EQ(record.end, NavigationStatus::kArrived) << yaw << ", " << clearance_m;
+    EXPECT_TRUE(record.recoveries.empty()) << yaw << ", " << clearance_m;
+  }
 }
 
 // 1.6 m between the walls: the cart fits across, but it has no room to turn. Each search takes more than half a second

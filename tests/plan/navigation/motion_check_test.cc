@@ -38,5 +38,15 @@ TEST(MotionCheck, APostOnTheStraightLineIsPassedOnTheArc) {
   EXPECT_TRUE(is_safe(costmap, -1.0));
 }
 
+// The side of the robot passes a keep-out line at a distance of 1.5 cm beyond the margin.
+TEST(MotionCheck, TheMinimumClearanceIsThatOfTheCaller) {
+  CostmapSettings settings;
+  const Footprint footprint({{-0.05, -0.05}, {0.05, -0.05}, {0.05, 0.05}, {-0.05, 0.05}});
+  const double y_m = settings.keep_out_margin_m + 0.015;
+  const Costmap costmap(settings, footprint, {{{0.4, y_m}, {2.0, y_m}}});
+  EXPECT_FALSE(is_motion_safe(costmap, {}, {.vx_mps = 1.0}, 1.0));
+  EXPECT_TRUE(is_motion_safe(costmap, {}, {.vx_mps = 1.0}, 1.0, 0.01));
+}
+
 }  // namespace
 }  // namespace patrol::plan::motion_check_test

@@ -212,8 +212,10 @@ TEST(Navigator, TellsAGoalInAWallFromOneWithoutARoute) {
   const DriveRecord in_wall = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({0.0, 2.0, 0.0}), 30.0);
   EXPECT_EQ(in_wall.end, NavigationStatus::kFailed);
   EXPECT_EQ(in_wall.failure, NavigationFailure::kGoalBlocked);
-  EXPECT_THAT(in_wall.texts,
-              ::testing::ElementsAre("Goal pose is in collision.", "Navigation aborted: Goal pose is in collision."));
+  EXPECT_THAT(
+      in_wall.texts,
+      ::testing::ElementsAre("Goal pose is blocked: obstacle, keep-out line or unknown space.",
+                             "Navigation aborted: Goal pose is blocked: obstacle, keep-out line or unknown space."));
   EXPECT_NEAR(in_wall.time_s, 5.0, 1.0);
   const DriveRecord behind = drive(navigator, room, {-2.0, 0.0, 0.0}, make_goal({3.0, 0.0, 0.0}), 30.0);
   EXPECT_EQ(behind.end, NavigationStatus::kFailed);
