@@ -8,6 +8,7 @@
 
 #include "app/scenario/data_folders.h"
 #include "app/scenario/scenario.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::app {
 namespace {
@@ -40,7 +41,7 @@ TEST(ScannedWorlds, ScansReachDownToTheLowestElevationOfTheWorld) {
       const Eigen::Vector3d d = Eigen::Vector3d(point.x, point.y, point.z) - scan.T_map_scanner.position;
       lowest = std::min(lowest, d.normalized().z());
     }
-    EXPECT_NEAR(lowest, std::sin(world.elevation_min_deg * std::numbers::pi / 180.0), 0.01);
+    EXPECT_NEAR(lowest, std::sin(to_rad(world.elevation_min_deg)), 0.01);
   }
 }
 
