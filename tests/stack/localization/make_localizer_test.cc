@@ -38,6 +38,24 @@ TEST(MakeLocalizer, PublishedCovarianceContainsTheDeformationOfTheMapWithAndWith
   }
 }
 
+RobotDescription quadruped_with_uwb() {
+  RobotDescription robot = test::make_quadruped();
+  robot.T_body_sensor["uwb"] = Pose3{{0.1, 0.0, 0.1}, Eigen::Quaterniond::Identity()};
+  return robot;
+}
+
+/// Range without noise to an anchor by a radio with a bias.
+RangeWithOdometry exact_range(const UwbAnchor& anchor, const UwbCalibration& radio, const RobotDescription& robot,
+                              const Pose2& truth, const Pose2& odometry, Time stamp) {
+  const Eigen::Vector3d antenna =
+      uwb_antenna_in_level(Eigen::Quaterniond::Identity(), robot.T_body("uwb"), robot.body_height_m());
+  return {.range = {.stamp = stamp,
+                    .anchor = anchor.number,
+                    .range_m = predict_uwb_range(anchor, truth, antenna, radio).range_m},
+          .T_odom_body = {{odometry.x, odometry.y, 0.0}, Eigen::Quaterniond::Identity()},
+          .height_m = robot.body_height_m()};
+}
+
 /// Confidence after ranges to an anchor above a quadruped, whose likelihood is 0 at an error of half the height of the
 /// body. They are exact for a radio with the given bias.
 LocalizationConfidence confidence_of_ranges(const LocalizerStart& start, const UwbCalibration& radio) {
@@ -45,9 +63,7 @@ LocalizationConfidence confidence_of_ranges(const LocalizerStart& start, const U
   settings.localization.ranges = {.range_std_m = 0.03, .nlos_probability = 0.0, .outlier_probability = 1e-6};
   settings.uwb_filter.bias_distance_m = radio.distance_m;
   settings.uwb_filter.bias_m = radio.bias_m;
-  RobotDescription robot = test::make_quadruped();
-  const Pose3 T_body_uwb{{0.1, 0.0, 0.1}, Eigen::Quaterniond::Identity()};
-  robot.T_body_sensor["uwb"] = T_body_uwb;
+  const RobotDescription robot = quadruped_with_uwb();
   Route site;
   site.anchors = {{.number = 4, .p_m = {1.0, 0.5, 3.0}}};
   const auto localizer = make_localizer(settings, robot, site, start, 1);
@@ -57,13 +73,7 @@ LocalizationConfidence confidence_of_ranges(const LocalizerStart& start, const U
   PoseEstimate pose;
   for (int i = 0; i <= 60; ++i) {
     const Pose2 truth{0.02 * i, 0.0, 0.0};
-    const Eigen::Vector3d antenna =
-        uwb_antenna_in_level(Eigen::Quaterniond::Identity(), T_body_uwb, robot.body_height_m());
-    localizer->add({.range = {.stamp = from_seconds(0.1 * i),
-                              .anchor = 4,
-                              .range_m = predict_uwb_range(site.anchors[0], truth, antenna, radio).range_m},
-                    .T_odom_body = {{truth.x, truth.y, 0.0}, Eigen::Quaterniond::Identity()},
-                    .height_m = robot.body_height_m()});
+    localizer->add(exact_range(site.anchors[0], radio, robot, truth, truth, from_seconds(0.1 * i)));
     LevelScan scan = room.scan(truth, {});
     scan.stamp = from_seconds(0.1 * i);
     pose = localizer->update(scan, truth, output);
@@ -100,9 +110,7 @@ double corridor_error_m(const UwbCalibration& of_settings) {
   ranges.common_std_m = ranges.anchor_delay_std_m = 0.01;
   settings.uwb_filter.bias_distance_m = of_settings.distance_m;
   settings.uwb_filter.bias_m = of_settings.bias_m;
-  RobotDescription robot = test::make_quadruped();
-  const Pose3 T_body_uwb{{0.1, 0.0, 0.1}, Eigen::Quaterniond::Identity()};
-  robot.T_body_sensor["uwb"] = T_body_uwb;
+  const RobotDescription robot = quadruped_with_uwb();
   Route site;
   site.anchors = {{.number = 4, .p_m = {26.0, 1.0, 2.0}}};
   const auto localizer = make_localizer(settings, robot, site, {}, 1);
@@ -113,13 +121,7 @@ double corridor_error_m(const UwbCalibration& of_settings) {
   PoseEstimate pose;
   for (int i = 0; i <= 200; ++i) {
     const Pose2 truth{0.1 * i, 0.0, 0.0}, odometry{0.102 * i, 0.0, 0.0};
-    const Eigen::Vector3d antenna =
-        uwb_antenna_in_level(Eigen::Quaterniond::Identity(), T_body_uwb, robot.body_height_m());
-    localizer->add({.range = {.stamp = from_seconds(0.1 * i),
-                              .anchor = 4,
-                              .range_m = predict_uwb_range(site.anchors[0], truth, antenna, radio).range_m},
-                    .T_odom_body = {{odometry.x, odometry.y, 0.0}, Eigen::Quaterniond::Identity()},
-                    .height_m = robot.body_height_m()});
+    localizer->add(exact_range(site.anchors[0], radio, robot, truth, odometry, from_seconds(0.1 * i)));
     LevelScan scan = corridor.scan(truth, {});
     scan.stamp = from_seconds(0.1 * i);
     pose = localizer->update(scan, odometry, output);
