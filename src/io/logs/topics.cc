@@ -1,7 +1,8 @@
 #include "io/logs/topics.h"
 
-#include <algorithm>
+#include <string_view>
 #include <type_traits>
+#include <unordered_map>
 
 namespace patrol::io {
 
@@ -14,9 +15,13 @@ std::vector<TopicInfo> topic_infos() {
 }
 
 std::optional<TopicInfo> find_topic(std::string_view topic) {
-  static const std::vector<TopicInfo> infos = topic_infos();
-  const auto info = std::ranges::find_if(infos, [&](const TopicInfo& one) { return topic == one.topic; });
-  return info != infos.end() ? std::optional(*info) : std::nullopt;
+  static const std::unordered_map<std::string_view, TopicInfo> infos = [] {
+    std::unordered_map<std::string_view, TopicInfo> by_topic;
+    for (const TopicInfo& info : topic_infos()) by_topic.emplace(info.topic, info);
+    return by_topic;
+  }();
+  const auto info = infos.find(topic);
+  return info != infos.end() ? std::optional(info->second) : std::nullopt;
 }
 
 bool is_stack_input(std::string_view topic) {
