@@ -91,7 +91,12 @@ io::McapMessage RecordStream::read() {
     }
     wait_.check("no answer");  // a side that keeps sending has no more time than a silent one
     char* const room = parser_.prepare(kReceiveBytes);
-    parser_.commit(socket_.receive(room, kReceiveBytes, wait_));
+    std::size_t size = socket_.receive_ready(room, kReceiveBytes);
+    if (size == 0) {
+      const SharedCore::Binding binding(core_.get());
+      size = socket_.receive(room, kReceiveBytes, wait_);
+    }
+    parser_.commit(size);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "io/ros/ros_messages.h"
 #include "link/protocol.h"
 #include "link/record_parser.h"
+#include "link/shared_core.h"
 #include "link/socket.h"
 
 namespace patrol::link {
@@ -48,6 +50,8 @@ class RecordStream {
   io::McapMessage read();
 
   int peer_process() const { return socket_.peer_process(); }
+  /// Binds the thread to the core of the other side while it waits for bytes (shared_core.h). Has no effect on TCP.
+  void share_core() { core_ = std::make_unique<SharedCore>(peer_process()); }
 
  private:
   /// Reads what the other side sent before it closed the connection. Throws its failure if it sent one.
@@ -55,6 +59,7 @@ class RecordStream {
 
   Socket socket_;
   WaitLimit wait_;
+  std::unique_ptr<SharedCore> core_;  ///< none: the thread is not bound
   RecordParser parser_;
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  ///< sent, ids by type and definition
   std::map<std::string, std::uint16_t> channels_;                         ///< ids of the sent channels by topic

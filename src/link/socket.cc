@@ -178,6 +178,11 @@ std::size_t Socket::receive(char* bytes, std::size_t size, const WaitLimit& wait
   }
 }
 
+std::size_t Socket::receive_ready(char* bytes, std::size_t size) noexcept {
+  const ssize_t received = ::recv(descriptor_, bytes, size, MSG_DONTWAIT);
+  return received > 0 ? static_cast<std::size_t>(received) : 0;
+}
+
 std::uint16_t Socket::port() const {
   sockaddr_in name{};
   socklen_t size = sizeof(name);

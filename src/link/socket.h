@@ -55,6 +55,8 @@ class Socket {
   void send(std::string_view bytes, const WaitLimit& wait);
   /// Returns how many bytes were sent without waiting: 0 also if the connection is closed.
   std::size_t send_ready(std::string_view bytes) noexcept;
+  /// Returns how many bytes were received without waiting: 0 also if the connection is closed.
+  std::size_t receive_ready(char* bytes, std::size_t size) noexcept;
   /// Waits for bytes and returns how many were received, at least one.
   std::size_t receive(char* bytes, std::size_t size, const WaitLimit& wait);
 

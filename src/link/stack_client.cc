@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <sched.h>
 
 #include "core/error.h"
 #include "link/link_error.h"
@@ -48,6 +49,13 @@ StackClient StackClient::connect() {
 void StackClient::begin(const std::string& stack, const std::vector<std::string>& topics, Time turn_period) {
   stream_.write_control(Time{}, HelloReply{.stack = stack, .topics = topics, .turn_period = turn_period});
   stream_.flush();
+}
+
+void StackClient::share_core() {
+  stream_.share_core();
+  // A simulator that is interrupted by its stack could be moved to another core.
+  const sched_param no_priority{};
+  if (::sched_getscheduler(0) == SCHED_OTHER) ::sched_setscheduler(0, SCHED_BATCH, &no_priority);
 }
 
 ReceivedTurn StackClient::next_turn() {

@@ -40,6 +40,11 @@ class StackClient {
   /// Answers the hello. `topics`: to receive; empty: all. `turn_period`: 0: one tick of the simulator.
   void begin(const std::string& stack, const std::vector<std::string>& topics, Time turn_period);
 
+  /// Binds the calling thread to the core of the simulator while it waits for messages, and makes it a batch thread
+  /// (sched(7)): it begins after the simulator has begun to wait. Turns and the simulator after them then begin sooner.
+  /// Between two waits the thread computes on any core. Has no effect on TCP. Not for `stack.compute.model=fixed`,
+  /// where the simulator continues beside the turn.
+  void share_core();
   /// Waits for the turn after the last `done`. Ask for no turn after the last one.
   ReceivedTurn next_turn();
   /// As above, but passes each message on as it arrives, possibly before the simulator has begun the turn.

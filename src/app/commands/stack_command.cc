@@ -28,7 +28,7 @@ io::TransformSet mounts_of(const std::vector<link::DeliveredMessage>& documents)
 }
 
 /// Creates the built-in stack by the documents of a hello: for a recorded log the mapping alone.
-std::unique_ptr<StackPort> stack_for(const link::StackClient& client) {
+std::unique_ptr<StackPort> stack_for(link::StackClient& client) {
   const link::Hello& hello = client.hello();
   if (is_recorded_log(hello))
     return std::make_unique<MappingStack>(mapping_settings_of(hello), mounts_of(client.documents()));
@@ -38,6 +38,7 @@ std::unique_ptr<StackPort> stack_for(const link::StackClient& client) {
   Scenario scenario = load_scenario(file);
   scenario.stack.command.clear();  // the built-in stack needs its sensors in this process as well
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
+  if (scenario.stack.compute.model != "fixed") client.share_core();  // the simulator waits for each turn
   return std::make_unique<BuiltInStack>(make_stack(scenario, files), stack::ComputeSettings{}, false);
 }
 
