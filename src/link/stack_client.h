@@ -45,6 +45,7 @@ class StackClient {
   /// Between two waits the thread computes on any core. Has no effect on TCP. Not for `stack.compute.model=fixed`,
   /// where the simulator continues beside the turn.
   void share_core();
+
   /// Waits for the turn after the last `done`. Ask for no turn after the last one.
   ReceivedTurn next_turn();
   /// As above, but passes each message on as it arrives, possibly before the simulator has begun the turn.
