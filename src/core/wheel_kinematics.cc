@@ -4,11 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/linear_algebra.h"
 #include "core/skid_spread.h"
 
 namespace patrol {
@@ -120,8 +119,9 @@ void check_levers(const RobotDescription& robot) {
   for (const WheelGeometry& wheel : robot.wheels) reach_m = std::max(reach_m, wheel.center_in_body.head<2>().norm());
   rows.col(2) /= reach_m;
   constexpr double kMinRatio = 0.05;
-  const Eigen::Vector3d values = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
-  if (values[2] >= kMinRatio * values[0]) return;
+  const Eigen::Vector3d squares =
+      symmetric_eigen(Eigen::Matrix3d(rows.transpose() * rows)).values;  // of the singular values
+  if (squares[0] >= kMinRatio * kMinRatio * squares[2]) return;
   throw InputError(
       fmt::format("robot {}: the mecanum wheels do not turn it: their rollers point at its middle", robot.name));
 }
@@ -321,7 +321,7 @@ WheelMotion mecanum_motion(const RobotDescription& robot, const std::vector<doub
     rim_mps[static_cast<Eigen::Index>(i)] =
         wheel.forward_sign * wheel.radius_m * speed_radps.at(wheel.drive_joint.value());
   }
-  WheelMotion motion{.velocity = rows.colPivHouseholderQr().solve(rim_mps)};
+  WheelMotion motion{.velocity = solve_symmetric(Eigen::Matrix3d(rows.transpose() * rows), rows.transpose() * rim_mps)};
   const Eigen::VectorXd rest_mps = rim_mps - rows * motion.velocity;
   motion.residual_mps = std::copysign(rest_mps.norm() / std::sqrt(static_cast<double>(rows.rows())), rest_mps[0]);
   return motion;

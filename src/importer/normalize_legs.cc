@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
+#include "core/geometry/linear_algebra.h"
 #include "importer/normalizer.h"
 
 namespace patrol::importer {
@@ -17,7 +18,7 @@ constexpr double kMinFoot_m = 0.008, kMaxFoot_m = 0.08;
 
 /// Returns the rotation that turns z along a direction.
 Eigen::Quaterniond along(const Eigen::Vector3d& direction) {
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), direction);
+  return rotation_between(Eigen::Vector3d::UnitZ(), direction);
 }
 
 }  // namespace

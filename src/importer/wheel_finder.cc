@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "core/geometry/linear_algebra.h"
 #include "importer/axial_shape.h"
 
 namespace patrol::importer {
@@ -114,8 +115,8 @@ void WheelFinder::use_rollers(const Pose3& T_root_axis, FoundWheel& wheel) const
   for (const SourceJoint* joint : found->second) {
     const Pose3& T_root_roller = T_root_link_.at(joint->child);
     const Eigen::Vector3d direction = T_root_axis.rotation.conjugate() * (T_root_roller.rotation * joint->axis);
-    const Pose3 T_root_own{T_root_roller.position, Eigen::Quaterniond::FromTwoVectors(
-                                                       Eigen::Vector3d::UnitZ(), T_root_roller.rotation * joint->axis)};
+    const Pose3 T_root_own{T_root_roller.position,
+                           rotation_between(Eigen::Vector3d::UnitZ(), T_root_roller.rotation * joint->axis)};
     const std::vector<const SourceLink*> links = rigid_group(robot_, joint->child, endless_);
     std::vector<AxialShape> shapes = axial_shapes(links, T_root_own, false);
     if (shapes.empty()) shapes = axial_shapes(links, T_root_own, true);
@@ -164,7 +165,7 @@ std::optional<FoundWheel> WheelFinder::measure_wheel(const SourceJoint& joint) {
     found_.rejected.push_back({&joint, fmt::format("the axis of joint {} is not horizontal", joint.name)});
     return std::nullopt;
   }
-  const Pose3 T_root_axis{T_root_child.position, Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis)};
+  const Pose3 T_root_axis{T_root_child.position, rotation_between(Eigen::Vector3d::UnitZ(), axis)};
   const std::vector<const SourceLink*> links = rigid_group(robot_, joint.child, endless_);
   const std::vector<AxialShape> collisions = axial_shapes(links, T_root_axis, false);
   const std::vector<AxialShape> visuals = axial_shapes(links, T_root_axis, true);

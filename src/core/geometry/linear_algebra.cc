@@ -42,4 +42,8 @@ SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A) {
 SymmetricEigen<2> symmetric_eigen_direct(const Eigen::Matrix2d& A) { return eigen_direct<2>(A); }
 SymmetricEigen<3> symmetric_eigen_direct(const Eigen::Matrix3d& A) { return eigen_direct<3>(A); }
 
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 }  // namespace patrol

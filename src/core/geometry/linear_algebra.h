@@ -1,8 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
-/// Decompositions of small symmetric matrices by Eigen, compiled once: as templates they dominate the compile time of
+/// Decompositions of small matrices by Eigen, compiled once: as templates they dominate the compile time of
 /// the files that instantiate them.
 namespace patrol {
 
@@ -37,5 +38,9 @@ SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A);
 /// the rounding error for nearly equal eigenvalues.
 SymmetricEigen<2> symmetric_eigen_direct(const Eigen::Matrix2d& A);
 SymmetricEigen<3> symmetric_eigen_direct(const Eigen::Matrix3d& A);
+
+/// Rotation by the smallest angle that turns the direction of `from` into that of `to`, vectors of any length but 0.
+/// For opposite directions the axis is any one that is perpendicular to them.
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace patrol

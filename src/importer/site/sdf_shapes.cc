@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/linear_algebra.h"
 #include "importer/gltf_header.h"
 #include "importer/site/mesh_site.h"
 #include "importer/site/polygon_mesh.h"
@@ -251,9 +252,8 @@ std::vector<SiteShape> SdfShapes::shapes_of(const sdf::Geometry& geometry, const
       const ignition::math::Vector2d size = geometry.PlaneShape()->Size();
       shape.type = SiteShapeType::kPlane;
       shape.size_m = {0.5 * size.X(), 0.5 * size.Y(), 0.0};
-      shape.T_site_shape.rotation =
-          shape.T_site_shape.rotation *
-          Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(n.X(), n.Y(), n.Z()));
+      shape.T_site_shape.rotation = shape.T_site_shape.rotation *
+                                    rotation_between(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(n.X(), n.Y(), n.Z()));
       return {shape};
     }
     case sdf::GeometryType::HEIGHTMAP:

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/frames.h"
 #include "core/geometry/angles.h"
+#include "core/geometry/linear_algebra.h"
 #include "core/random.h"
 #include "sim/tem/conductive_sheet.h"
 #include "sim/tem/laplace_inversion.h"
@@ -96,8 +97,8 @@ Eigen::VectorXd SubsurfaceResponse::body_rate(std::size_t index, const Eigen::Ve
   }
   const ConductiveSpheroid spheroid = spheroid_of(body);
   check_distance(body, offset.norm(), 1.2 * std::max(spheroid.polar_m, spheroid.equatorial_m));
-  const Eigen::Quaterniond R_body_world = Eigen::Quaterniond::FromTwoVectors(
-      direction(body.axis_azimuth_deg, body.axis_elevation_deg), Eigen::Vector3d::UnitZ());
+  const Eigen::Quaterniond R_body_world =
+      rotation_between(direction(body.axis_azimuth_deg, body.axis_elevation_deg), Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d p_body_m = R_body_world * -offset;
   const Eigen::Matrix3d R = R_body_world.toRotationMatrix(), axes_in_body = R * axes * R.transpose();
   const auto nodes = laplace_nodes();

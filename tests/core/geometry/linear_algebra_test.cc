@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -74,6 +75,21 @@ TEST(SymmetricEigen, HasTheClosedFormValuesInTwoDimensions) {
     EXPECT_NEAR(eigen.values[1], 0.5 * (5.0 + std::sqrt(5.0)), kTol);
     EXPECT_TRUE((eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose()).isApprox(A, kTol));
   }
+}
+
+TEST(RotationBetween, TurnsOneDirectionIntoTheOtherAboutTheirNormal) {
+  const Eigen::Vector3d from(0.0, 0.0, 2.0), to(3.0, 0.0, 3.0);
+  const Eigen::Quaterniond rotation = rotation_between(from, to);
+  EXPECT_TRUE((rotation * from.normalized()).isApprox(to.normalized(), kTol));
+  EXPECT_NEAR(rotation.angularDistance(Eigen::Quaterniond::Identity()), 0.25 * std::numbers::pi, kTol);
+  EXPECT_TRUE((rotation * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitY(), kTol));
+}
+
+TEST(RotationBetween, TurnsOppositeDirectionsByHalfATurn) {
+  const Eigen::Vector3d from(1.0, -2.0, 0.5);
+  const Eigen::Quaterniond rotation = rotation_between(from, -from);
+  EXPECT_TRUE((rotation * from).isApprox(-from, kTol));
+  EXPECT_NEAR(rotation.norm(), 1.0, kTol);
 }
 
 }  // namespace
