@@ -9,13 +9,13 @@
 #include <sstream>
 #include <string_view>
 
-#include <Eigen/Eigenvalues>
 #include <console_bridge/console.h>
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include "core/error.h"
 #include "core/geometry/convex_polygon.h"
+#include "core/geometry/linear_algebra.h"
 #include "io/urdf_reader.h"
 
 namespace patrol::io {
@@ -136,8 +136,7 @@ void UrdfReader::check_inertias() const {
     const urdf::Inertial& i = *link->inertial;
     Eigen::Matrix3d inertia;
     inertia << i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz;
-    const Eigen::Vector3d moments =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::Vector3d moments = symmetric_eigen(inertia).values;
     constexpr double kRounding = 1e-4;  // files have few digits
     if (moments[0] > 0.0 && moments[2] <= (moments[0] + moments[1]) * (1.0 + kRounding)) continue;
     fail(name, fmt::format("invalid inertia: principal moments {:.3g}, {:.3g} and {:.3g} kg m2", moments[0], moments[1],

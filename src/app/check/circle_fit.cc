@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::app {
 
@@ -14,7 +14,7 @@ Circle fit_circle(const std::vector<Eigen::Vector2d>& points_m) {
     normal += row * row.transpose();
     right += row * p_m.squaredNorm();
   }
-  const Eigen::Vector3d solution = normal.ldlt().solve(right);
+  const Eigen::Vector3d solution = solve_symmetric(normal, right);
   const Eigen::Vector2d center_m = solution.head<2>();
   return {.center_m = center_m, .radius_m = std::sqrt(solution.z() + center_m.squaredNorm())};
 }

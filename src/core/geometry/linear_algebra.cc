@@ -1,5 +1,7 @@
 #include "core/geometry/linear_algebra.h"
 
+#include <cmath>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
@@ -43,7 +45,19 @@ SymmetricEigen<2> symmetric_eigen_direct(const Eigen::Matrix2d& A) { return eige
 SymmetricEigen<3> symmetric_eigen_direct(const Eigen::Matrix3d& A) { return eigen_direct<3>(A); }
 
 Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to);
+  // As Eigen::Quaterniond::FromTwoVectors, which takes a singular value decomposition for opposite directions.
+  const Eigen::Vector3d a = from.normalized(), b = to.normalized();
+  const double cosine = a.dot(b);
+  Eigen::Quaterniond rotation;
+  if (cosine < -1.0 + 1e-12) {
+    rotation.w() = 0.0;
+    rotation.vec() = a.unitOrthogonal();
+  } else {
+    const double size = std::sqrt(2.0 * (1.0 + cosine));
+    rotation.w() = 0.5 * size;
+    rotation.vec() = a.cross(b) * (1.0 / size);
+  }
+  return rotation;
 }
 
 }  // namespace patrol

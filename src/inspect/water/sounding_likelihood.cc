@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -77,7 +76,7 @@ Eigen::MatrixXd fit_quadratic_form(const Eigen::MatrixXd& rate, const Eigen::Mat
   Eigen::MatrixXd form = Eigen::MatrixXd::Ones(count, count < kEnough ? 1 : 6);
   for (Eigen::Index i = 0; i < count && count >= kEnough; ++i)
     form.row(i) = products(axes[static_cast<std::size_t>(i)]).transpose();
-  const Eigen::MatrixXd fit = form.completeOrthogonalDecomposition().solve(rate.transpose());
+  const Eigen::MatrixXd fit = (form.transpose() * form).ldlt().solve(form.transpose() * rate.transpose());
   Eigen::MatrixXd smooth = (form * fit).transpose();
   constexpr double kClear = 3.0;
   for (Eigen::Index gate = 0; gate < rate.rows(); ++gate) {

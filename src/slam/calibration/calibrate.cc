@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/linear_algebra.h"
 #include "core/upper_median.h"
 #include "slam/calibration/motion_residual.h"
 
@@ -58,7 +59,7 @@ class Calibrator {
       Matrix6 H = curvature(false);
       Vector6 g = gradient(0, pairs_.size()) + loose_information() * (parameters_ - before_);
       fix_parameters(is_fixed, H, g);
-      const Vector6 step = -H.ldlt().solve(g);
+      const Vector6 step = -solve_symmetric(H, g);
       parameters_ += step;
       converged_ = !is_early && step.dot(H * step) < 1e-8;
     }

@@ -21,7 +21,7 @@ constexpr double kMaxDisagreement_m = 0.5, kMaxDisagreementRad = 0.05;
 // Standard deviation of a submap that was located in the earlier map as a whole, for matches with its submaps.
 constexpr double kLocatedStd_m = 0.2, kLocatedStdRad = 0.02;
 constexpr double kMinLocatingScore = 0.4;  ///< of the search in the whole map
-constexpr double kSearchMargin_m = 10.0;   ///< around the earlier path
+constexpr double kPathMargin_m = 10.0;     ///< around the earlier path
 constexpr int kSameSurfaceRadius = 2;      ///< cells
 /// A submap is not kept if more than this fraction of its surfaces lies in observed cells of the others, and agrees
 /// there as in a loop closure.
@@ -33,7 +33,7 @@ SearchWindow window_around(const std::vector<Pose2>& T_map_node, std::size_t num
   Eigen::AlignedBox2d box;
   for (std::size_t k = 0; k < num_nodes; ++k) box.extend((T_first_map * T_map_node[k]).position());
   return {.T_map_center = {box.center().x(), box.center().y(), 0.0},
-          .half_width_m = 0.5 * box.sizes().maxCoeff() + kSearchMargin_m,
+          .half_width_m = 0.5 * box.sizes().maxCoeff() + kPathMargin_m,
           .half_angle_rad = std::numbers::pi};
 }
 

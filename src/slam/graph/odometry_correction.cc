@@ -10,11 +10,11 @@ namespace {
 constexpr double kDriftPerMeter = 1e-6;
 /// Shortest motion that says something: distance plus turn at 1 m.
 constexpr double kMinMotion_m = 0.005;
-constexpr double kStudentDegreesOfFreedom = 4.0;
+constexpr double kOdometryDegreesOfFreedom = 4.0;
 
 /// Factor of the variance of a measurement with this squared normalized residual.
 double variance_factor(double squared) {
-  return (kStudentDegreesOfFreedom + squared) / (kStudentDegreesOfFreedom + 1.0);
+  return (kOdometryDegreesOfFreedom + squared) / (kOdometryDegreesOfFreedom + 1.0);
 }
 
 }  // namespace

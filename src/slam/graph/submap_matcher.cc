@@ -5,8 +5,9 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
+#include "core/geometry/linear_algebra.h"
 #include "slam/surface_overlap.h"
 
 namespace patrol::slam {
@@ -121,8 +122,8 @@ double fine_inlier_ratio(const RenderedSubmap& target, const RenderedSubmap& sou
 /// distance of distinct poses agrees almost as well, or a nearer one at least as well. Bare walls hide such a shift.
 bool slides(const RenderedSubmap& target, const RenderedSubmap& source, const SubmapMatch& match, double ratio,
             const SubmapMatcherSettings& settings) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> covariance(match.information.inverse().topLeftCorner<2, 2>());
-  const Eigen::Vector2d weakest = covariance.eigenvectors().col(1);
+  const Eigen::Matrix2d covariance = match.information.inverse().topLeftCorner<2, 2>();
+  const Eigen::Vector2d weakest = symmetric_eigen(covariance).vectors.col(1);
   for (int step = 1; step <= kNumShifts; ++step) {
     const double shift_m = settings.min_second_best_distance_m * step / kNumShifts;
     const double max_ratio = step < kNumShifts ? ratio : settings.max_second_best_inlier_fraction * ratio;

@@ -16,9 +16,9 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kMaxNodes = 4000.0;    // along either axis
-constexpr double kNdtTurnArm_m = 10.0;  // distance at which the rotation of a step is evaluated
-constexpr double kMinWeight = 1e-6;     // a cell whose points are all on its border has no covariance
+constexpr double kMaxNodes = 4000.0;     // along either axis
+constexpr double kNdtTurnArm_m = 10.0;   // distance at which the rotation of a step is evaluated
+constexpr double kMinCellWeight = 1e-6;  // a cell whose points are all on its border has no covariance
 
 /// One of the four nodes around a point, with its bilinear weight.
 struct NodeWeight {
@@ -82,7 +82,7 @@ NdtGrid::NdtGrid(const std::vector<Eigen::Vector2d>& points_target, double cell_
   std::vector<CellSums> sums;
   for (const Eigen::Vector2d& p : points_target) {
     for (const NodeWeight& node_weight : bilinear_weights(p - origin_m_, node_spacing_m_)) {
-      if (node_weight.weight <= kMinWeight) continue;
+      if (node_weight.weight <= kMinCellWeight) continue;
       int& cell = cell_of_node_.at(node_weight.node);
       if (cell < 0) {
         cell = static_cast<int>(sums.size());

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "core/geometry/linear_algebra.h"
 
 namespace patrol::importer {
 
@@ -20,10 +20,9 @@ FittedPlane fit_plane(const PointMoments& moments) {
   FittedPlane plane;
   plane.center = moments.sum / moments.n;
   const Eigen::Matrix3d covariance = moments.products / moments.n - plane.center * plane.center.transpose();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(covariance);
-  plane.axes = solver.eigenvectors();
-  plane.std_m = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const SymmetricEigen<3> eigen = symmetric_eigen_direct(covariance);
+  plane.axes = eigen.vectors;
+  plane.std_m = eigen.values.cwiseMax(0.0).cwiseSqrt();
   return plane;
 }
 
