@@ -241,6 +241,10 @@ std::optional<RayHit> EmbreeScene::cast(const Eigen::Vector3d& origin, const Eig
                 .normal = Eigen::Vector3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized().cast<double>()};
 }
 
+void EmbreeScene::cast(std::span<const Ray> rays, double max_range_m, std::span<std::optional<RayHit>> hits) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = cast(rays[i].origin, rays[i].direction, max_range_m);
+}
+
 RTCGeometry EmbreeScene::make_round(const PlacedGeom& placed) {
   rounds_.push_back(std::make_unique<PlacedGeom>(placed));
   RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER);

@@ -51,10 +51,10 @@ constexpr double kBoxMargin_m = 1e-3;  ///< exceeds the rounding of coordinates 
 class Boxes {
  public:
   void resize(std::size_t count) {
-    const auto packs = (count + kPack - 1) / kPack;
-    for (auto* side : {&lower_, &upper_}) {
-      for (std::vector<Pack>& axis : *side) axis.resize(packs, Pack::Constant(kInfinity));
-    }
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    PackedBoxes unused;
+    for (auto* side : {&unused.lower, &unused.upper}) side->fill(Pack::Constant(kInfinity));
+    packs_.resize((count + kPack - 1) / kPack, unused);
     count_ = count;
   }
 
@@ -67,8 +67,8 @@ class Boxes {
     const auto lane = static_cast<Eigen::Index>(i % kPack);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto row = static_cast<Eigen::Index>(axis);
-      lower_[axis][i / kPack][lane] = static_cast<float>(center[row] - half[row] - kBoxMargin_m);
-      upper_[axis][i / kPack][lane] = static_cast<float>(center[row] + half[row] + kBoxMargin_m);
+      packs_[i / kPack].lower[axis][lane] = static_cast<float>(center[row] - half[row] - kBoxMargin_m);
+      packs_[i / kPack].upper[axis][lane] = static_cast<float>(center[row] + half[row] + kBoxMargin_m);
     }
   }
 
@@ -78,12 +78,12 @@ class Boxes {
                          Visit visit) const {
     // Replace zero components by a tiny value, so that the inverse is finite and no product below is 0 x infinity.
     const Eigen::Array3f inverse = (direction.array().abs() < 1e-12f).select(1e-12f, direction.array()).inverse();
-    for (std::size_t pack = 0; pack < lower_[0].size(); ++pack) {
+    for (std::size_t pack = 0; pack < packs_.size(); ++pack) {
       Pack enter = Pack::Zero(), leave = Pack::Constant(reach_m);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto row = static_cast<Eigen::Index>(axis);
-        const Pack to_lower = (lower_[axis][pack] - origin[row]) * inverse[row],
-                   to_upper = (upper_[axis][pack] - origin[row]) * inverse[row];
+        const Pack to_lower = (packs_[pack].lower[axis] - origin[row]) * inverse[row],
+                   to_upper = (packs_[pack].upper[axis] - origin[row]) * inverse[row];
         enter = enter.max(to_lower.min(to_upper));
         leave = leave.min(to_lower.max(to_upper));
       }
@@ -97,10 +97,12 @@ class Boxes {
 
  private:
   static constexpr std::size_t kPack = 4;
-  static constexpr float kInfinity = std::numeric_limits<float>::infinity();
   using Pack = Eigen::Array<float, kPack, 1>;
+  struct PackedBoxes {
+    std::array<Pack, 3> lower, upper;  ///< [axis][part % 4]; unused: infinitely far
+  };
 
-  std::array<std::vector<Pack>, 3> lower_, upper_;  ///< bounds, [axis][part / 4][part % 4]; unused: infinitely far
+  std::vector<PackedBoxes> packs_;  ///< [part / 4]
   std::size_t count_ = 0;
 };
 
@@ -245,21 +247,25 @@ struct LidarScene::Impl {
     if (is_nearer) best->normal = pose.rotation * best->normal;
   }
 
-  /// `cast_at_parts` replaces a hit on the static scene by a nearer one on a part.
+  /// Returns the first hit, given that on the static scene. `cast_at_parts` replaces it by a nearer one on a part.
   template <typename CastAtParts>
-  std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m,
-                             std::uint32_t mask, CastAtParts cast_at_parts) const {
-    std::optional<RayHit> best;
-    if (mask & kRayScenery) best = static_scene->cast(origin, direction, max_range_m);
+  static std::optional<RayHit> with_parts(std::optional<RayHit> best, const Eigen::Vector3d& direction,
+                                          double max_range_m, CastAtParts cast_at_parts) {
     double reach_m = best ? best->distance_m : max_range_m;
     cast_at_parts(reach_m, best);
     if (best && best->normal.dot(direction) > 0.0) best->normal = -best->normal;
     return best;
   }
 
-  std::optional<RayHit> cast(const Poses& at, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-                             double max_range_m, std::uint32_t mask) const {
-    return cast(origin, direction, max_range_m, mask, [&](double& reach_m, std::optional<RayHit>& best) {
+  std::optional<RayHit> cast_at_static(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                       double max_range_m, std::uint32_t mask) const {
+    return mask & kRayScenery ? static_scene->cast(origin, direction, max_range_m) : std::nullopt;
+  }
+
+  /// Returns the first hit, given that on the static scene.
+  std::optional<RayHit> complete(const std::optional<RayHit>& hit, const Poses& at, const Ray& ray, double max_range_m,
+                                 std::uint32_t mask) const {
+    return with_parts(hit, ray.direction, max_range_m, [&](double& reach_m, std::optional<RayHit>& best) {
       const auto cast_at = [&](std::size_t i) {
         const MovingPart& part = parts[i];
         if (!(part.mask & mask)) return;
@@ -267,18 +273,18 @@ struct LidarScene::Impl {
           part.shape_boxes.visit_intersected(from.template cast<float>(), along.template cast<float>(),
                                              static_cast<float>(reach), visit);
         };
-        cast_at_part(part, at.parts[i], origin, direction, reach_m, best, visit_shapes);
+        cast_at_part(part, at.parts[i], ray.origin, ray.direction, reach_m, best, visit_shapes);
       };
-      at.boxes.visit_intersected(origin.cast<float>(), direction.cast<float>(), static_cast<float>(reach_m), cast_at);
+      at.boxes.visit_intersected(ray.origin.cast<float>(), ray.direction.cast<float>(), static_cast<float>(reach_m),
+                                 cast_at);
     });
   }
 
-  std::optional<RayHit> cast(const Targets& targets, const Eigen::Vector3d& origin,
-                             const Eigen::Vector3d& direction) const {
+  std::optional<RayHit> complete(const std::optional<RayHit>& hit, const Targets& targets, const Ray& ray) const {
     const Poses& at = *targets.poses;
-    if (!targets.cone.contains(origin, direction))
-      return cast(at, origin, direction, targets.max_range_m, targets.mask);
-    return cast(origin, direction, targets.max_range_m, targets.mask, [&](double& reach_m, auto& best) {
+    if (!targets.cone.contains(ray.origin, ray.direction))
+      return complete(hit, at, ray, targets.max_range_m, targets.mask);
+    return with_parts(hit, ray.direction, targets.max_range_m, [&](double& reach_m, auto& best) {
       for (const Targets::Part& target : targets.parts) {
         const MovingPart& part = parts[target.index];
         const auto visit_shapes = [&](const auto& from, const auto& along, const double& reach, const auto& visit) {
@@ -286,7 +292,7 @@ struct LidarScene::Impl {
             if (intersects(part.wide_boxes[targets.shapes[k]], from, along, reach)) visit(targets.shapes[k]);
           }
         };
-        cast_at_part(part, at.parts[target.index], origin, direction, reach_m, best, visit_shapes);
+        cast_at_part(part, at.parts[target.index], ray.origin, ray.direction, reach_m, best, visit_shapes);
       }
     });
   }
@@ -323,7 +329,7 @@ void LidarScene::update(const mjData& data) { impl_->update_poses(data); }
 
 std::optional<RayHit> LidarScene::cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                        double max_range_m, std::uint32_t mask) const {
-  return impl_->cast(*impl_->poses, origin, direction, max_range_m, mask);
+  return cast(*impl_->poses, origin, direction, max_range_m, mask);
 }
 
 std::shared_ptr<const LidarScene::Poses> LidarScene::poses() const {
@@ -333,7 +339,8 @@ std::shared_ptr<const LidarScene::Poses> LidarScene::poses() const {
 
 std::optional<RayHit> LidarScene::cast(const Poses& poses, const Eigen::Vector3d& origin,
                                        const Eigen::Vector3d& direction, double max_range_m, std::uint32_t mask) const {
-  return impl_->cast(poses, origin, direction, max_range_m, mask);
+  return impl_->complete(impl_->cast_at_static(origin, direction, max_range_m, mask), poses, {origin, direction},
+                         max_range_m, mask);
 }
 
 LidarScene::Targets LidarScene::targets(std::shared_ptr<const Poses> poses, const RayCone& cone, double max_range_m,
@@ -345,7 +352,14 @@ LidarScene::Targets LidarScene::targets(std::shared_ptr<const Poses> poses, cons
 
 std::optional<RayHit> LidarScene::cast(const Targets& targets, const Eigen::Vector3d& origin,
                                        const Eigen::Vector3d& direction) const {
-  return impl_->cast(targets, origin, direction);
+  return impl_->complete(impl_->cast_at_static(origin, direction, targets.max_range_m, targets.mask), targets,
+                         {origin, direction});
+}
+
+void LidarScene::cast(const Targets& targets, std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) const {
+  if (targets.mask & kRayScenery) impl_->static_scene->cast(rays, targets.max_range_m, hits);
+  else std::ranges::fill(hits, std::nullopt);
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = impl_->complete(hits[i], targets, rays[i]);
 }
 
 }  // namespace patrol::sim

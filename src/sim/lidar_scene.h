@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ struct RayHit {
   double distance_m;
   int geom;                ///< id of the geom in the view model
   Eigen::Vector3d normal;  ///< unit normal, in world, oriented toward the ray's origin
+};
+
+/// Ray in world or in the frame of a body.
+struct Ray {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;  ///< unit vector
 };
 
 /// Ray caster on MuJoCo's geometry, for high ray rates.
@@ -81,6 +88,9 @@ class LidarScene {
   /// Returns the first hit, as `cast` at the poses of the targets does. Faster for the rays in the cone.
   std::optional<RayHit> cast(const Targets& targets, const Eigen::Vector3d& origin,
                              const Eigen::Vector3d& direction) const;
+  /// Returns the first hits of several rays in `hits`, which is as long as `rays`. Fastest for rays in the order of
+  /// their directions.
+  void cast(const Targets& targets, std::span<const Ray> rays, std::span<std::optional<RayHit>> hits) const;
 
   const mjModel& model() const;
   /// Returns Embree's scene of the static geometry, for benchmarks.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -194,6 +196,40 @@ TEST(LidarScene, RaysOfAConeHitWhatTheyHitWithoutIt) {
   }
   EXPECT_GT(hits, 400) << "rays that hit a moving body";
   EXPECT_GT(left_out, 100) << "cones that miss a body";
+}
+
+/// Several numbers of rays, with and without scenery.
+TEST(LidarScene, RaysCastTogetherHitWhatTheyHitAlone) {
+  SmallWorld world(kEveryShape, kMesh);
+  const RandomStream random(7, "rays");
+  int hits = 0, others = 0;
+  for (std::uint64_t bundle = 0; bundle < 600; ++bundle) {
+    const RayCone cone{.center = 3.0 * random_direction(random, bundle) + Eigen::Vector3d(0, 0, 3.2),
+                       .radius_m = 1e-6,
+                       .axis = random_direction(random, 1000 + bundle),
+                       .cosine = std::cos(0.2),
+                       .sine = std::sin(0.2)};
+    const std::uint32_t mask = bundle % 10 == 0 ? kRayEverything & ~kRayScenery : kRayEverything;
+    const LidarScene::Targets targets = world.scene.targets(world.scene.poses(), cone, kRange_m, mask);
+    const Eigen::Vector3d side = cone.axis.unitOrthogonal();
+    std::vector<Ray> rays;
+    for (std::uint64_t ray = 0; ray < bundle % 37; ++ray) {
+      const double angle = 0.01 * static_cast<double>(ray) - 0.18;
+      rays.push_back({cone.center, std::cos(angle) * cone.axis + std::sin(angle) * side});
+    }
+    std::vector<std::optional<RayHit>> together(rays.size(), RayHit{.distance_m = -1.0, .geom = -1, .normal = {}});
+    world.scene.cast(targets, rays, together);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto alone = world.scene.cast(targets, rays[i].origin, rays[i].direction);
+      ASSERT_EQ(together[i].has_value(), alone.has_value()) << "bundle " << bundle << ", ray " << i;
+      if (!alone) continue;
+      ++hits;
+      EXPECT_EQ(together[i]->distance_m, alone->distance_m);
+      if (together[i]->geom != alone->geom || together[i]->normal != alone->normal) ++others;
+    }
+  }
+  EXPECT_GT(hits, 4000);
+  EXPECT_EQ(others, 0);
 }
 
 TEST(LidarScene, NormalsAreThoseOfMuJoCoAndLookTowardsTheRaysOrigin) {

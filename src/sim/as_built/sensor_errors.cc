@@ -16,14 +16,22 @@ double LidarErrors::range_error_m(double range_m, double reflectivity, double co
   return error_m;
 }
 
-Eigen::Vector3d LidarErrors::actual_direction(const Eigen::Vector3d& nominal) const {
-  if (cone_rad == 0.0 && axis_tilt_x_rad == 0.0 && axis_tilt_y_rad == 0.0) return nominal;
+Eigen::Vector3d LidarErrors::actual_direction(const Eigen::Vector3d& nominal) const { return LidarAim(*this)(nominal); }
+
+LidarAim::LidarAim(const LidarErrors& errors)
+    : is_ideal_(errors.cone_rad == 0.0 && errors.axis_tilt_x_rad == 0.0 && errors.axis_tilt_y_rad == 0.0),
+      axis_tilt_x_rad_(errors.axis_tilt_x_rad),
+      axis_tilt_y_rad_(errors.axis_tilt_y_rad),
+      cosine_(std::cos(errors.cone_rad)),
+      sine_(std::sin(errors.cone_rad)) {}
+
+Eigen::Vector3d LidarAim::operator()(const Eigen::Vector3d& nominal) const {
+  if (is_ideal_) return nominal;
   const double level = std::hypot(nominal.x(), nominal.y());
-  const double cosine = std::cos(cone_rad), sine = std::sin(cone_rad);
-  const double raised = level * cosine - nominal.z() * sine, height = nominal.z() * cosine + level * sine;
+  const double raised = level * cosine_ - nominal.z() * sine_, height = nominal.z() * cosine_ + level * sine_;
   const double shrink = level > 0.0 ? raised / level : 0.0;
   const Eigen::Vector3d beam(shrink * nominal.x(), shrink * nominal.y(), height);
-  return (beam + Eigen::Vector3d(axis_tilt_x_rad, axis_tilt_y_rad, 0.0).cross(beam)).normalized();
+  return (beam + Eigen::Vector3d(axis_tilt_x_rad_, axis_tilt_y_rad_, 0.0).cross(beam)).normalized();
 }
 
 double ImuErrors::temperature_rise_k(Time now) const {

@@ -27,6 +27,18 @@ struct LidarErrors {
   Eigen::Vector3d actual_direction(const Eigen::Vector3d& nominal) const;
 };
 
+/// Errors of direction of a lidar, for many beams: sine and cosine are computed once.
+class LidarAim {
+ public:
+  explicit LidarAim(const LidarErrors& errors);
+  /// Equal to `errors.actual_direction(nominal)` to the bit.
+  Eigen::Vector3d operator()(const Eigen::Vector3d& nominal) const;
+
+ private:
+  bool is_ideal_;
+  double axis_tilt_x_rad_, axis_tilt_y_rad_, cosine_, sine_;
+};
+
 /// Systematic errors of a triad of inertial sensors, in units of the readings.
 struct TriadErrors {
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();

@@ -1,15 +1,14 @@
 #include "sim/sensors/lidar.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <numbers>
 #include <utility>
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
-#include "sim/sensors/sensor.h"
 
 namespace patrol::sim {
 namespace {
@@ -40,6 +39,7 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_bod
       mask_(kRayEverything & ~static_cast<std::uint32_t>(own_housing)),
       dust_(dust),
       errors_(errors),
+      aim_(errors),
       min_incidence_cosine_(std::cos(settings.max_incidence_deg * kDegree)),
       surfaces_(surface_optics(scene.model())),
       false_return_rate_per_m_(settings.false_return_rate_per_m +
@@ -56,10 +56,11 @@ Lidar::Lidar(const LidarSettings& settings, const LidarScene& scene, Pose3 T_bod
       worker_(worker) {
   validate(settings, name);
   settings_.range_noise_std_m *= errors.noise_ratio;
-  const double step = settings.fov_deg * kDegree / settings.beams;
+  const double step = settings.fov_deg * kDegree / settings.beams, used = settings.fov_deg / 360.0;
   for (int beam = 0; beam < settings.beams; ++beam) {
     const double angle = -settings.fov_deg * kDegree / 2.0 + beam * step;
     azimuth_.emplace_back(std::cos(angle), std::sin(angle));
+    instants_.push_back(1.0 - used + used * static_cast<double>(beam + 1) / settings.beams);
   }
   for (int ring = 0; ring < settings.rings; ++ring) {
     const double fraction = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
@@ -82,8 +83,7 @@ Lidar::~Lidar() {
 Time Lidar::instant_of(std::int64_t beam) const {
   const std::int64_t revolution = beam / settings_.beams, index = beam % settings_.beams;
   const double revolution_ns = 1e9 / settings_.rate_hz;
-  const double used = settings_.fov_deg / 360.0;
-  const double in_revolution = 1.0 - used + used * static_cast<double>(index + 1) / settings_.beams;
+  const double in_revolution = instants_[static_cast<std::size_t>(index)];
   if (errors_.rate_std > 0.0) return Time{std::llround(revolution_begin_ns_ + in_revolution * revolution_ns_)};
   return Time{std::llround((static_cast<double>(revolution) + in_revolution) * revolution_ns)};
 }
@@ -130,7 +130,10 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
     Pose3 T_world_lidar = move_between(T_world_body_from, T_world_body_to, fraction) * T_body_lidar_;
     if (settings_.stabilized) T_world_lidar = remove_tilt(T_world_lidar);
     const bool is_last = next_beam_ % settings_.beams == settings_.beams - 1;
-    if (!shots) shots = &shots_.emplace_back(Shots{.bodies = scene_.poses(), .beams = {}});
+    if (!shots) {
+      shots = &shots_.emplace_back(Shots{.bodies = scene_.poses(), .beams = {}});
+      if (settings_.motion_distortion) shots->beams.reserve(most_beams_);
+    }
     if (settings_.motion_distortion) {
       shots->beams.push_back({next_beam_, instant, T_world_lidar});
     } else if (is_last) {
@@ -138,6 +141,7 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
         shots->beams.push_back({beam, instant_of(beam), T_world_lidar});
     }
     ++next_beam_;
+    most_beams_ = std::max(most_beams_, shots->beams.size());
     if (!is_last) continue;
     finish_revolution();
     begin_revolution();
@@ -148,10 +152,10 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
 
 /// Measures the beams, or gives them to the worker.
 void Lidar::submit() {
-  const auto measure_beams = [this, shots = std::exchange(shots_, {}), revolution = revolution_] {
+  auto measure_beams = [this, shots = std::exchange(shots_, {}), revolution = revolution_] {
     for (const Shots& of_tick : shots) fire(of_tick, *revolution);
   };
-  if (worker_) submitted_ = worker_->submit(measure_beams);
+  if (worker_) submitted_ = worker_->submit(std::move(measure_beams));
   else measure_beams();
 }
 
@@ -191,10 +195,28 @@ Eigen::Vector3d Lidar::direction(std::size_t column, std::size_t ring) const {
 
 void Lidar::fire(const Shots& shots, Revolution& revolution) const {
   constexpr std::size_t kBeamsPerCone = 32;
+  std::vector<Eigen::Vector3d> aims;  // in lidar
+  std::vector<Ray> rays;
+  std::vector<std::optional<RayHit>> hits;
   for (std::size_t begin = 0; begin < shots.beams.size(); begin += kBeamsPerCone) {
     const std::span beams = std::span(shots.beams).subspan(begin, std::min(kBeamsPerCone, shots.beams.size() - begin));
     const LidarScene::Targets targets = scene_.targets(shots.bodies, cone_of(beams), settings_.range_max_m, mask_);
-    for (const Beam& beam : beams) fire(beam, targets, revolution);
+    aims.clear(), rays.clear();
+    for (const Beam& beam : beams) {
+      for (std::size_t ring = 0; ring < elevation_.size(); ++ring) {
+        aims.push_back(aimed(beam, ring));
+        rays.push_back({beam.T_world_lidar.position, beam.T_world_lidar.rotation * aims.back()});
+      }
+    }
+    hits.resize(rays.size());
+    scene_.cast(targets, rays, hits);
+    std::size_t i = 0;
+    for (const Beam& beam : beams) {
+      for (std::size_t ring = 0; ring < elevation_.size(); ++ring, ++i) {
+        const Return ideal = to_return(hits[i], rays[i].direction);
+        record(beam, ring, measure(beam, ring, targets, aims[i], ideal, revolution.last_range_m[ring]), revolution);
+      }
+    }
   }
 }
 
@@ -202,15 +224,14 @@ void Lidar::fire(const Shots& shots, Revolution& revolution) const {
 RayCone Lidar::cone_of(std::span<const Beam> beams) const {
   const double margin_rad = kDegree * (0.5 + 0.5 * settings_.beam_width_deg + 4.0 * settings_.angle_noise_std_deg);
   const Beam& middle = beams[beams.size() / 2];
-  const auto column = [&](const Beam& beam) { return static_cast<std::size_t>(beam.number % settings_.beams); };
   RayCone cone{.center = middle.T_world_lidar.position, .radius_m = 0.0, .axis = Eigen::Vector3d::Zero()};
   for (const std::size_t ring : {std::size_t{0}, elevation_.size() - 1})
-    cone.axis += middle.T_world_lidar.rotation * direction(column(middle), ring);
+    cone.axis += middle.T_world_lidar.rotation * direction(column_of(middle), ring);
   cone.axis.normalize();
   for (const Beam* end : {&beams.front(), &beams.back()}) {
     cone.radius_m = std::max(cone.radius_m, (end->T_world_lidar.position - cone.center).norm() + 1e-6);
     for (const std::size_t ring : {std::size_t{0}, elevation_.size() - 1}) {
-      const Eigen::Vector3d ray = end->T_world_lidar.rotation * direction(column(*end), ring);
+      const Eigen::Vector3d ray = end->T_world_lidar.rotation * direction(column_of(*end), ring);
       cone.cosine = std::min(cone.cosine, cone.axis.dot(ray));
     }
   }
@@ -220,43 +241,43 @@ RayCone Lidar::cone_of(std::span<const Beam> beams) const {
   return cone;
 }
 
-void Lidar::fire(const Beam& beam, const LidarScene::Targets& targets, Revolution& revolution) const {
-  const auto tick = static_cast<std::uint64_t>(beam.number / settings_.beams);
-  const auto column = static_cast<std::size_t>(beam.number % settings_.beams);
-  for (std::size_t ring = 0; ring < elevation_.size(); ++ring) {
-    const std::uint64_t index = column * elevation_.size() + ring;
-    const Eigen::Vector3d nominal = direction(column, ring);
-    const Return got = measure(tick, index, targets, beam.T_world_lidar, nominal, revolution.last_range_m[ring]);
-    if (settings_.rings == 1) {
-      revolution.scan.ranges_m.push_back(static_cast<float>(got.range_m));
-      revolution.scan.intensities.push_back(static_cast<float>(got.intensity));
-    } else if (std::isfinite(got.range_m)) {
-      const Eigen::Vector3f point = (got.range_m * nominal).cast<float>();
-      revolution.cloud.points.push_back(
-          {.x = point.x(),
-           .y = point.y(),
-           .z = point.z(),
-           .intensity = static_cast<float>(got.intensity),
-           .time_s = static_cast<float>(to_seconds(beam.instant - revolution.cloud.stamp)),
-           .ring = static_cast<std::uint16_t>(ring)});
-    }
+/// Appends a reading to its revolution.
+void Lidar::record(const Beam& beam, std::size_t ring, const Return& got, Revolution& revolution) const {
+  if (settings_.rings == 1) {
+    revolution.scan.ranges_m.push_back(static_cast<float>(got.range_m));
+    revolution.scan.intensities.push_back(static_cast<float>(got.intensity));
+  } else if (std::isfinite(got.range_m)) {
+    const Eigen::Vector3f point = (got.range_m * direction(column_of(beam), ring)).cast<float>();
+    revolution.cloud.points.push_back({.x = point.x(),
+                                       .y = point.y(),
+                                       .z = point.z(),
+                                       .intensity = static_cast<float>(got.intensity),
+                                       .time_s = static_cast<float>(to_seconds(beam.instant - revolution.cloud.stamp)),
+                                       .ring = static_cast<std::uint16_t>(ring)});
   }
 }
 
-/// Returns the reading of one beam with all error sources.
-Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Targets& targets,
-                             const Pose3& T_world_lidar, const Eigen::Vector3d& direction, double& last_range_m) const {
-  Eigen::Vector3d aimed = direction;
+/// Returns the actual direction of a beam, in lidar.
+Eigen::Vector3d Lidar::aimed(const Beam& beam, std::size_t ring) const {
+  const std::size_t column = column_of(beam);
+  Eigen::Vector3d aimed = direction(column, ring);
   if (settings_.angle_noise_std_deg > 0.0) {
-    const double turn = settings_.angle_noise_std_deg * kDegree * angle_noise_.normal(tick, index);
-    aimed += turn * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
+    const double turn =
+        settings_.angle_noise_std_deg * kDegree * angle_noise_.normal(tick_of(beam), column * elevation_.size() + ring);
+    aimed += turn * Eigen::Vector3d(-aimed.y(), aimed.x(), 0.0);
     aimed.normalize();
   }
-  aimed = errors_.actual_direction(aimed);
-  Return got = trace(targets, T_world_lidar, aimed);
+  return aim_(aimed);
+}
+
+/// Returns the reading of one beam with all error sources, given that of the ideal ray along its axis.
+Lidar::Return Lidar::measure(const Beam& beam, std::size_t ring, const LidarScene::Targets& targets,
+                             const Eigen::Vector3d& aimed, const Return& ideal, double& last_range_m) const {
+  const std::uint64_t tick = tick_of(beam), index = column_of(beam) * elevation_.size() + ring;
+  Return got = ideal;
   const double jump_m = std::abs(got.range_m - std::exchange(last_range_m, got.range_m));
   if (jump_m > kMinJump_m && jump_m < kPulseLength_m && settings_.beam_width_deg > 0.0) {
-    got = mixed_pixel_return(targets, T_world_lidar, aimed, got);
+    got = mixed_pixel_return(targets, beam.T_world_lidar, aimed, got);
   }
   if (false_return_rate_per_m_ > 0.0) {
     const double path_m = std::min(got.range_m, settings_.range_max_m);
@@ -278,24 +299,22 @@ Lidar::Return Lidar::measure(std::uint64_t tick, std::uint64_t index, const Lida
   return got;
 }
 
-/// Returns the reading of an ideal ray without width.
-Lidar::Return Lidar::trace(const LidarScene::Targets& targets, const Pose3& T_world_lidar,
-                           const Eigen::Vector3d& direction) const {
-  const Eigen::Vector3d ray = T_world_lidar.rotation * direction;
-  const std::optional<RayHit> hit = scene_.cast(targets, T_world_lidar.position, ray);
-  return hit ? to_return(*hit, ray, hit->distance_m) : Return{kInfinity, 0.0};
-}
-
 /// Returns the mean over the beam width, weighted by the returned light, of surfaces within one pulse length only.
 Lidar::Return Lidar::mixed_pixel_return(const LidarScene::Targets& targets, const Pose3& T_world_lidar,
                                         const Eigen::Vector3d& direction, const Return& middle) const {
-  constexpr int kRays = 4;
+  constexpr std::size_t kRays = 4;
   const Eigen::Vector3d sideways =
       settings_.beam_width_deg * kDegree * Eigen::Vector3d(-direction.y(), direction.x(), 0.0);
+  std::array<Ray, kRays> rays;
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const double fraction = (static_cast<double>(i) + 0.5) / kRays - 0.5;
+    rays[i] = {T_world_lidar.position, T_world_lidar.rotation * (direction + fraction * sideways).normalized()};
+  }
+  std::array<std::optional<RayHit>, kRays> hits;
+  scene_.cast(targets, rays, hits);
   double light = 0.0, light_range = 0.0, light_intensity = 0.0;
-  for (int i = 0; i < kRays; ++i) {
-    const double fraction = (i + 0.5) / kRays - 0.5;
-    const Return part = trace(targets, T_world_lidar, (direction + fraction * sideways).normalized());
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const Return part = to_return(hits[i], rays[i].direction);
     if (!(std::abs(part.range_m - middle.range_m) < kPulseLength_m)) continue;
     const double returned = part.intensity / (part.range_m * part.range_m);
     light += returned;
@@ -305,10 +324,12 @@ Lidar::Return Lidar::mixed_pixel_return(const LidarScene::Targets& targets, cons
   return light > 0.0 ? Return{light_range / light, light_intensity / light} : middle;
 }
 
-/// Returns the reading of a surface. Glass off its normal, grazing incidence, and dark distant surfaces return nothing.
-Lidar::Return Lidar::to_return(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const {
-  const double cosine = std::abs(hit.normal.dot(direction));
-  const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit.geom)];
+/// Returns the reading of an ideal ray without width. Glass off its normal, grazing incidence, and dark distant
+/// surfaces return nothing.
+Lidar::Return Lidar::to_return(const std::optional<RayHit>& hit, const Eigen::Vector3d& direction) const {
+  if (!hit) return {kInfinity, 0.0};
+  const double range_m = hit->distance_m, cosine = std::abs(hit->normal.dot(direction));
+  const SurfaceOptics& surface = surfaces_[static_cast<std::size_t>(hit->geom)];
   if (surface.is_transparent_at(cosine)) return {kInfinity, 0.0};
   if (cosine < min_incidence_cosine_) return {kInfinity, 0.0};
   // The returned light falls with the square of the range. range_max_m is reached on white, max_range_10pct_m on 10 %.
@@ -318,68 +339,6 @@ Lidar::Return Lidar::to_return(const RayHit& hit, const Eigen::Vector3d& directi
   if (settings_.max_range_10pct_m > 0.0 && dust_.equivalent_clear_distance_m(range_m) > reach_m)
     return {kInfinity, 0.0};
   return {range_m + errors_.range_error_m(range_m, reflectivity, cosine), 255.0 * std::min(1.0, reflectivity * cosine)};
-}
-
-namespace {
-
-/// Lidar that publishes its scans as messages of the type `Scan`.
-template <typename Scan>
-class LidarOnBody : public Sensor {
- public:
-  LidarOnBody(const SensorContext& context, const LidarSettings& settings, const std::string& frame, RayMask housing)
-      : lidar_(settings, context.scene, context.robot.T_body(frame), housing, context.seed, frame,
-               context.settings.dust, context.as_built.lidar(frame), &context.worker) {}
-
-  void step(const SensorTick& tick, std::vector<SensorMessage>& readings) override {
-    if (tick.is_first()) return;
-    const auto timer = tick.clock.time_stage("lidar");
-    lidar_.advance(tick.last, tick.now, tick.T_world_body_last, tick.T_world_body);
-    for (Lidar::FiredRevolution& fired : lidar_.take_fired()) {
-      if (lidar_.has_rings()) {
-        readings.emplace_back(std::in_place_type<PointCloud>);
-        std::get<PointCloud>(readings.back()).stamp = fired.revolution->cloud.stamp;
-      } else {
-        readings.emplace_back(std::in_place_type<Scan>);
-        std::get<Scan>(readings.back()).stamp = fired.revolution->scan.stamp;
-      }
-      fired_.push_back(std::move(fired));
-    }
-  }
-
-  void complete(SensorMessage& reading) override {
-    Lidar::Revolution& measured = lidar_.measured(fired_.front());
-    if (lidar_.has_rings()) reading = std::move(measured.cloud);
-    else reading = Scan{std::move(measured.scan)};
-    fired_.pop_front();
-  }
-
-  void serialize_state(StateArchive& archive) override { archive(lidar_); }
-
- private:
-  Lidar lidar_;
-  std::deque<Lidar::FiredRevolution> fired_;  ///< revolutions whose messages have to be completed, in order
-};
-
-}  // namespace
-
-template <>
-std::unique_ptr<Sensor> make_sensor<LaserScan>(const SensorContext& context) {
-  const LidarSettings& settings = context.settings.lidar;
-  return settings.enabled ? std::make_unique<LidarOnBody<LaserScan>>(context, settings, "lidar", kRayLidar2d) : nullptr;
-}
-
-template <>
-std::unique_ptr<Sensor> make_sensor<PointCloud>(const SensorContext& context) {
-  const LidarSettings& settings = context.settings.lidar3d;
-  return settings.enabled ? std::make_unique<LidarOnBody<LaserScan>>(context, settings, "lidar3d", kRayLidar3d)
-                          : nullptr;
-}
-
-template <>
-std::unique_ptr<Sensor> make_sensor<RearLaserScan>(const SensorContext& context) {
-  const LidarSettings& settings = context.settings.lidar_rear;
-  return settings.enabled ? std::make_unique<LidarOnBody<RearLaserScan>>(context, settings, "lidar_rear", kRayLidarRear)
-                          : nullptr;
 }
 
 }  // namespace patrol::sim

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -91,13 +92,15 @@ class Lidar {
   void fire(const Shots& shots, Revolution& revolution) const;
   RayCone cone_of(std::span<const Beam> beams) const;
   Eigen::Vector3d direction(std::size_t column, std::size_t ring) const;
-  void fire(const Beam& beam, const LidarScene::Targets& targets, Revolution& revolution) const;
-  Return measure(std::uint64_t tick, std::uint64_t index, const LidarScene::Targets& targets,
-                 const Pose3& T_world_lidar, const Eigen::Vector3d& direction, double& last_range_m) const;
-  Return trace(const LidarScene::Targets& targets, const Pose3& T_world_lidar, const Eigen::Vector3d& direction) const;
+  std::size_t column_of(const Beam& beam) const { return static_cast<std::size_t>(beam.number % settings_.beams); }
+  std::uint64_t tick_of(const Beam& beam) const { return static_cast<std::uint64_t>(beam.number / settings_.beams); }
+  Eigen::Vector3d aimed(const Beam& beam, std::size_t ring) const;
+  Return to_return(const std::optional<RayHit>& hit, const Eigen::Vector3d& direction) const;
+  Return measure(const Beam& beam, std::size_t ring, const LidarScene::Targets& targets, const Eigen::Vector3d& aimed,
+                 const Return& ideal, double& last_range_m) const;
   Return mixed_pixel_return(const LidarScene::Targets& targets, const Pose3& T_world_lidar,
                             const Eigen::Vector3d& direction, const Return& middle) const;
-  Return to_return(const RayHit& hit, const Eigen::Vector3d& direction, double range_m) const;
+  void record(const Beam& beam, std::size_t ring, const Return& got, Revolution& revolution) const;
   void begin_revolution();
   void update_rate();
 
@@ -107,6 +110,7 @@ class Lidar {
   std::uint32_t mask_;
   DustSettings dust_;
   LidarErrors errors_;
+  LidarAim aim_;
   double min_incidence_cosine_;          ///< cosine of the angle of incidence below which beams are lost
   std::vector<SurfaceOptics> surfaces_;  ///< [geom] of the view model
   double false_return_rate_per_m_;       ///< rate of false returns from rain and dust
@@ -115,9 +119,11 @@ class Lidar {
   double revolution_begin_ns_ = 0.0, revolution_ns_ = 0.0;  ///< begin and duration of the revolution of the next beam
   double rate_error_ = 0.0;                                 ///< relative error of the revolution rate
   std::vector<Eigen::Vector2d> azimuth_;                    ///< [beam], cosine and sine of the azimuth
+  std::vector<double> instants_;                            ///< [beam], fraction of the revolution
   std::vector<Eigen::Vector2d> elevation_;                  ///< [ring], cosine and sine of the elevation
   std::shared_ptr<Revolution> revolution_ = std::make_shared<Revolution>();
-  std::vector<Shots> shots_;  ///< not yet submitted, [tick]
+  std::vector<Shots> shots_;    ///< not yet submitted, [tick]
+  std::size_t most_beams_ = 0;  ///< maximum number of beams in a tick, for memory only
   BackgroundWorker* worker_;
   BackgroundWorker::Ticket submitted_ = 0;
   std::vector<FiredRevolution> fired_;
