@@ -1,5 +1,6 @@
 #include "sim/embree_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -45,23 +46,29 @@ void round_bounds(const RTCBoundsFunctionArguments* arguments) {
                           .align1 = 0.0f};
 }
 
+/// Tests one or several rays against a round geom.
 void intersect_round(const RTCIntersectFunctionNArguments* arguments) {
-  if (arguments->valid[0] == 0) return;
   const auto& geom = *static_cast<const PlacedGeom*>(arguments->geometryUserPtr);
-  auto& ray_hit = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-  RTCRay& ray = ray_hit.ray;
-  const mjtNum origin[3] = {ray.org_x, ray.org_y, ray.org_z};
-  const mjtNum direction[3] = {ray.dir_x, ray.dir_y, ray.dir_z};
-  mjtNum normal[3];
-  const mjtNum distance = mju_rayGeom(geom.position, geom.rotation, geom.size, origin, direction, geom.type, normal);
-  if (distance < ray.tnear || distance >= ray.tfar || distance < 0.0) return;
-  ray.tfar = static_cast<float>(distance);
-  RTCHit& hit = ray_hit.hit;
-  hit.Ng_x = static_cast<float>(normal[0]);
-  hit.Ng_y = static_cast<float>(normal[1]);
-  hit.Ng_z = static_cast<float>(normal[2]);
-  hit.geomID = arguments->geomID;
-  hit.primID = 0;
+  const unsigned count = arguments->N;
+  RTCRayN* const rays = RTCRayHitN_RayN(arguments->rayhit, count);
+  RTCHitN* const hits = RTCRayHitN_HitN(arguments->rayhit, count);
+  for (unsigned i = 0; i < count; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const mjtNum origin[3] = {RTCRayN_org_x(rays, count, i), RTCRayN_org_y(rays, count, i),
+                              RTCRayN_org_z(rays, count, i)};
+    const mjtNum direction[3] = {RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i),
+                                 RTCRayN_dir_z(rays, count, i)};
+    float& tfar = RTCRayN_tfar(rays, count, i);
+    mjtNum normal[3];
+    const mjtNum distance = mju_rayGeom(geom.position, geom.rotation, geom.size, origin, direction, geom.type, normal);
+    if (distance < RTCRayN_tnear(rays, count, i) || distance >= tfar || distance < 0.0) continue;
+    tfar = static_cast<float>(distance);
+    RTCHitN_Ng_x(hits, count, i) = static_cast<float>(normal[0]);
+    RTCHitN_Ng_y(hits, count, i) = static_cast<float>(normal[1]);
+    RTCHitN_Ng_z(hits, count, i) = static_cast<float>(normal[2]);
+    RTCHitN_geomID(hits, count, i) = arguments->geomID;
+    RTCHitN_primID(hits, count, i) = 0;
+  }
 }
 
 /// Vertices and faces of one geom, in the frame of its Embree scene.
@@ -204,6 +211,19 @@ RTCRayHit make_query(const Eigen::Vector3d& origin, const Eigen::Vector3d& direc
   return query;
 }
 
+/// Writes ray `i` of a packet.
+void set_ray(const Ray& ray, double max_range_m, std::size_t i, RTCRayHit8& query) {
+  query.ray.org_x[i] = static_cast<float>(ray.origin.x());
+  query.ray.org_y[i] = static_cast<float>(ray.origin.y());
+  query.ray.org_z[i] = static_cast<float>(ray.origin.z());
+  query.ray.dir_x[i] = static_cast<float>(ray.direction.x());
+  query.ray.dir_y[i] = static_cast<float>(ray.direction.y());
+  query.ray.dir_z[i] = static_cast<float>(ray.direction.z());
+  query.ray.tfar[i] = static_cast<float>(max_range_m);
+  query.ray.mask[i] = ~0u;
+  query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+}
+
 }  // namespace
 
 bool is_analytic(int type) {
@@ -242,7 +262,26 @@ std::optional<RayHit> EmbreeScene::cast(const Eigen::Vector3d& origin, const Eig
 }
 
 void EmbreeScene::cast(std::span<const Ray> rays, double max_range_m, std::span<std::optional<RayHit>> hits) const {
-  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = cast(rays[i].origin, rays[i].direction, max_range_m);
+  constexpr std::size_t kPacket = 8;  // rays of one instruction of kEmbreeConfiguration (lidar_scene.cc)
+  RTCIntersectContext context{};
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  for (std::size_t begin = 0; begin < rays.size(); begin += kPacket) {
+    const std::size_t count = std::min(kPacket, rays.size() - begin);
+    RTCRayHit8 query{};
+    alignas(32) std::array<int, kPacket> valid{};
+    for (std::size_t i = 0; i < count; ++i) set_ray(rays[begin + i], max_range_m, i, query), valid[i] = -1;
+    rtcIntersect8(valid.data(), scene_, &context, &query);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::optional<RayHit>& hit = hits[begin + i];
+      hit.reset();
+      if (query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      hit = {.distance_m = query.ray.tfar[i],
+             .geom = geoms_[query.hit.geomID[i]],
+             .normal =
+                 Eigen::Vector3f(query.hit.Ng_x[i], query.hit.Ng_y[i], query.hit.Ng_z[i]).normalized().cast<double>()};
+    }
+  }
 }
 
 RTCGeometry EmbreeScene::make_round(const PlacedGeom& placed) {

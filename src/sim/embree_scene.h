@@ -46,7 +46,8 @@ class EmbreeScene {
 
   /// Returns the first hit within `max_range_m`. Its normal is not yet oriented toward the origin.
   std::optional<RayHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_range_m) const;
-  /// Returns the same for several rays in `hits`, which is as long as `rays`.
+  /// Returns the same for several rays in `hits`, which is as long as `rays`. Rays with neighboring directions are
+  /// traced together.
   void cast(std::span<const Ray> rays, double max_range_m, std::span<std::optional<RayHit>> hits) const;
 
   RTCScene handle() const { return scene_; }

