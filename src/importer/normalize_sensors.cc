@@ -173,6 +173,8 @@ void Normalizer::add_sensors() {
       source_.fail(source_.link(link).line, link, fmt::format("frame {}: must be on the chassis", frame));
     add_frame(frame, T_base(link), "");
     move_housing(frame, link);
+    clear_origin(frame, link);
+    check_scan_plane(frame);
     added.insert(frame);
   }
   for (const SourceSensor& sensor : sensors_in_order()) {
@@ -199,6 +201,8 @@ void Normalizer::add_sensors() {
     T_base_added[frame] = T_base_sensor;
     add_frame(frame, T_base_sensor, sensor.link);
     move_housing(frame, sensor.link);
+    clear_origin(frame, sensor.link);
+    check_scan_plane(frame);
     choose_preset(frame, sensor);
   }
   for (const auto& [frame, links] : others)

@@ -157,6 +157,8 @@ class Normalizer {
   std::vector<SourceSensor> sensors_in_order();
   void add_frame(const std::string& frame, const Pose3& T_base_frame, const std::string& link);
   void move_housing(const std::string& frame, const std::string& link);
+  void clear_origin(const std::string& frame, const std::string& link);
+  void check_scan_plane(const std::string& frame);
   void choose_preset(const std::string& frame, const SourceSensor& sensor);
   void choose_scan_band();
   void finish();

@@ -15,6 +15,7 @@
 #include "core/geometry/angles.h"
 #include "core/text.h"
 #include "io/files/atomic_file.h"
+#include "sim/as_built/as_built_settings.h"
 #include "sim/lidar_scene.h"
 #include "sim/model_assembly.h"
 #include "sim/mujoco.h"
@@ -22,16 +23,18 @@
 namespace patrol::app {
 namespace {
 
-/// Casts all beams of a lidar at the robot alone.
-BlockedBeams beams_on_robot(const CheckLidar& lidar, const Pose3& T_world_lidar, const sim::LidarScene& scene) {
+/// Casts every `step`-th beam of the rings of a lidar at the robot alone.
+BlockedBeams beams_on_robot(const CheckLidar& lidar, const Pose3& T_world_lidar, const sim::LidarScene& scene,
+                            int step) {
   const LidarSettings& settings = lidar.settings;
   const std::uint32_t mask = sim::kRayEverything & ~std::uint32_t{sim::kRayScenery} & ~std::uint32_t{lidar.housing};
   std::map<std::string, int> num_hits;
-  int num_blocked = 0;
+  int num_blocked = 0, num_cast = 0;
   for (int ring = 0; ring < settings.rings; ++ring) {
     const double part = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
     const double elevation = to_rad(std::lerp(settings.elevation_min_deg, settings.elevation_max_deg, part));
-    for (int beam = 0; beam < settings.beams; ++beam) {
+    for (int beam = 0; beam < settings.beams; beam += step) {
+      ++num_cast;
       const double azimuth = to_rad(settings.fov_deg * (static_cast<double>(beam) / settings.beams - 0.5));
       const Eigen::Vector3d direction{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                       std::sin(elevation)};
@@ -46,8 +49,38 @@ BlockedBeams beams_on_robot(const CheckLidar& lidar, const Pose3& T_world_lidar,
   for (const auto& [link, num] : num_hits) links.emplace_back(-num, link);
   std::ranges::sort(links);
   BlockedBeams blocked{
-      .frame = lidar.frame, .ratio = static_cast<double>(num_blocked) / (settings.rings * settings.beams), .links = {}};
+      .frame = lidar.frame, .ratio = static_cast<double>(num_blocked) / std::max(num_cast, 1), .links = {}};
   for (const auto& [num, link] : links) blocked.links.push_back(link);
+  return blocked;
+}
+
+/// Returns the mounts at the corners of the tolerance: position, and rotation about x and y. Only the nominal one
+/// without as-built errors.
+std::vector<Pose3> mount_corners(const sim::AsBuiltSettings& as_built) {
+  if (!as_built.enabled) return {Pose3{}};
+  const double d = as_built.mounting.position_m, a = to_rad(as_built.mounting.angle_deg);
+  std::vector<Pose3> corners;
+  for (int i = 0; i < 32; ++i) {
+    const auto side = [i](int bit) { return ((i >> bit) & 1) != 0 ? 1.0 : -1.0; };
+    corners.push_back({{d * side(0), d * side(1), d * side(2)}, quaternion_from_rpy(a * side(3), a * side(4), 0.0)});
+  }
+  return corners;
+}
+
+/// Returns the blocked beams with the nominal mount, and the largest ratio within the tolerance of the mount.
+BlockedBeams beams_within_tolerance(const CheckLidar& lidar, const Pose3& T_world_lidar, const sim::LidarScene& scene,
+                                    const sim::AsBuiltSettings& as_built) {
+  constexpr int kMaxBeams = 4000;
+  BlockedBeams blocked = beams_on_robot(lidar, T_world_lidar, scene, 1);
+  blocked.max_ratio = blocked.ratio;
+  blocked.max_links = blocked.links;
+  const int step = 1 + lidar.settings.rings * lidar.settings.beams / kMaxBeams;
+  for (const Pose3& T_nominal_actual : mount_corners(as_built)) {
+    BlockedBeams actual = beams_on_robot(lidar, T_world_lidar * T_nominal_actual, scene, step);
+    if (actual.ratio <= blocked.max_ratio) continue;
+    blocked.max_ratio = actual.ratio;
+    blocked.max_links = std::move(actual.links);
+  }
   return blocked;
 }
 
@@ -70,7 +103,8 @@ std::vector<BlockedBeams> blocked_beams(const CheckRobot& robot, const std::file
   const Pose3 T_world_body{{p[0], p[1], p[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
   std::vector<BlockedBeams> result;
   for (const CheckLidar& lidar : robot.lidars)
-    result.push_back(beams_on_robot(lidar, T_world_body * robot.description.T_body(lidar.frame), scene));
+    result.push_back(beams_within_tolerance(lidar, T_world_body * robot.description.T_body(lidar.frame), scene,
+                                            robot.simulator.as_built));
   return result;
 }
 
@@ -78,12 +112,18 @@ std::vector<std::string> warnings_of(const std::vector<BlockedBeams>& lidars) {
   constexpr double kManyBeams = 0.05;
   std::vector<std::string> warnings;
   for (const BlockedBeams& lidar : lidars) {
-    if (lidar.ratio <= kManyBeams) continue;
-    warnings.push_back(lidar.ratio < 1.0
-                           ? fmt::format("{:.0f} % of the beams of {} hit the robot itself: {}", 100.0 * lidar.ratio,
-                                         lidar.frame, join(lidar.links, ", "))
-                           : fmt::format("all beams of {} hit the robot itself: its frame is enclosed in {}",
-                                         lidar.frame, join(lidar.links, ", ")));
+    if (lidar.ratio >= 1.0) {
+      warnings.push_back(fmt::format("all beams of {} hit the robot itself: its frame is enclosed in {}", lidar.frame,
+                                     join(lidar.links, ", ")));
+    } else if (lidar.max_ratio > std::max(kManyBeams, lidar.ratio + kManyBeams)) {
+      warnings.push_back(
+          fmt::format("{:.0f} % of the beams of {} hit the robot itself with a mount within the tolerance "
+                      "as_built.mounting, {:.0f} % with the nominal mount: {}: raise the frame by mounts",
+                      100.0 * lidar.max_ratio, lidar.frame, 100.0 * lidar.ratio, join(lidar.max_links, ", ")));
+    } else if (lidar.ratio > kManyBeams) {
+      warnings.push_back(fmt::format("{:.0f} % of the beams of {} hit the robot itself: {}", 100.0 * lidar.ratio,
+                                     lidar.frame, join(lidar.links, ", ")));
+    }
   }
   return warnings;
 }

@@ -56,6 +56,7 @@ CheckResult run_check(const CheckRobot& robot, const CheckProgress& progress) {
   for (const Maneuver& maneuver : maneuvers) total_s += maneuver.duration_s;
   CheckResult result{.robot = robot, .warnings = warnings_of(blocked_beams(robot, folder.path())), .maneuvers = {}};
   std::ranges::move(scan_reach_warnings(robot), std::back_inserter(result.warnings));
+  std::ranges::move(scan_plane_warnings(robot), std::back_inserter(result.warnings));
   for (const Maneuver& maneuver : maneuvers) {
     const auto on_time = [&](double time_s) {
       progress(maneuver.title, (done_s + std::min(time_s, maneuver.duration_s)) / total_s);

@@ -1,9 +1,12 @@
 #include "app/check/scan_reach.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
+
+#include "core/geometry/angles.h"
 
 namespace patrol::app {
 namespace {
@@ -31,6 +34,21 @@ std::vector<std::string> scan_reach_warnings(const CheckRobot& robot) {
       "lidar is {:.2f} m above the ground, stack.scan_leveling.min_height_m is {:.2f} m: the built-in stack ignores "
       "hits farther than {:.1f} m, and half of that or less if the lidar leans",
       lidar_height_m(robot), robot.scan_leveling.min_height_m, reach_m)};
+}
+
+std::vector<std::string> scan_plane_warnings(const CheckRobot& robot) {
+  constexpr double kMaxTilt_deg = 10.0;
+  std::vector<std::string> warnings;
+  for (const CheckLidar& lidar : robot.lidars) {
+    if (lidar.settings.rings > 1) continue;
+    const double up = std::abs((robot.description.T_body(lidar.frame).rotation * Eigen::Vector3d::UnitZ()).z());
+    const double tilt_deg = to_deg(std::acos(std::min(up, 1.0)));
+    if (tilt_deg <= kMaxTilt_deg) continue;
+    warnings.push_back(
+        fmt::format("the scan plane of {} is tilted by {:.0f} degrees: mapping and navigation need a horizontal one",
+                    lidar.frame, tilt_deg));
+  }
+  return warnings;
 }
 
 }  // namespace patrol::app

@@ -14,4 +14,7 @@ double scan_reach_m(const CheckRobot& robot);
 /// Returns a sentence if the reach of the scan is below 4 m because the lidar is near the ground.
 std::vector<std::string> scan_reach_warnings(const CheckRobot& robot);
 
+/// Returns a sentence for each 2D lidar whose scan plane is tilted by more than 10 degrees.
+std::vector<std::string> scan_plane_warnings(const CheckRobot& robot);
+
 }  // namespace patrol::app

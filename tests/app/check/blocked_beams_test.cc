@@ -1,12 +1,18 @@
 #include "app/check/blocked_beams.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "importer/sensor_origin.h"
+#include "io/files/atomic_file.h"
+#include "sim/as_built/as_built_settings.h"
 #include "tests/support/temporary_file.h"
+#include "tests/support/wheeled_urdf.h"
 
 namespace patrol::app::blocked_beams_test {
 namespace {
@@ -33,6 +39,46 @@ TEST(BlockedBeams, ALidarInsideTheChassisIsReportedWithTheLinkThatEnclosesIt) {
   EXPECT_THAT(lidars[0].links, ElementsAre("base_link"));
   EXPECT_THAT(warnings_of(lidars),
               ElementsAre("all beams of lidar hit the robot itself: its frame is enclosed in base_link"));
+}
+
+/// Differential robot with a lidar on a mast; `height_m`: of the origin of the beams above the top of the mast.
+std::vector<BlockedBeams> on_mast(double height_m, std::vector<std::string> overrides) {
+  std::string urdf = test::differential_urdf().text();
+  const std::size_t end = urdf.find("</robot>");
+  urdf.insert(end, R"(<link name="mast"><visual><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.03" length="1"/>
+      </geometry></visual></link><joint name="mast_joint" type="fixed"><parent link="base_link"/><child link="mast"/>
+      </joint>)");
+  const test::TemporaryFolder root;
+  const std::filesystem::path model = root / "models/rover";
+  std::filesystem::create_directories(model);
+  io::save_text(model / "rover.urdf", urdf);
+  overrides.push_back(fmt::format("mounts=[{{frame: lidar, z_m: {}}}]", 1.0 + height_m));
+  return blocked_beams(load_check_robot("rover", overrides, {}, root.path()), root.path());
+}
+
+// 1 mm above the mast, no beam hits it; 3 mm lower, all beams do.
+TEST(BlockedBeams, ALidarOnTopOfAMastIsReportedBecauseOfTheToleranceOfItsMount) {
+  const std::vector<BlockedBeams> lidars = on_mast(0.001, {});
+  ASSERT_EQ(lidars.size(), 1U);
+  EXPECT_EQ(lidars[0].ratio, 0.0);
+  EXPECT_EQ(lidars[0].max_ratio, 1.0);
+  EXPECT_THAT(warnings_of(lidars),
+              ElementsAre("100 % of the beams of lidar hit the robot itself with a mount within the tolerance "
+                          "as_built.mounting, 0 % with the nominal mount: mast: raise the frame by mounts"));
+  EXPECT_THAT(warnings_of(on_mast(0.001, {"as_built.enabled=false"})), IsEmpty());
+  EXPECT_THAT(warnings_of(on_mast(0.02, {})), IsEmpty());
+}
+
+TEST(BlockedBeams, TheToleranceOfTheImporterIsTheDefaultOfTheSimulator) {
+  EXPECT_EQ(importer::kMountTolerance_m, sim::MountingTolerances{}.position_m);
+}
+
+TEST(BlockedBeams, TheLidarsOfTheRobotsOfPatrolAreClearOfThemWithEveryMount) {
+  for (const char* name : {"wheeled", "cart", "tracked", "quadruped"}) {
+    const test::TemporaryFolder folder;
+    EXPECT_THAT(warnings_of(blocked_beams(load_check_robot(name, {}, {}, PATROL_SOURCE_DIR), folder.path())), IsEmpty())
+        << name;
+  }
 }
 
 TEST(BlockedBeams, TheWarningHasThePercentageAndTheLinksAndBeginsAbove5Percent) {

@@ -43,6 +43,14 @@ TEST(ScanReach, WithoutALidarThereIsNoWarning) {
   EXPECT_THAT(scan_reach_warnings(wheeled({"sensors.lidar.enabled=false"})), IsEmpty());
 }
 
+TEST(ScanReach, AScanPlaneThatIsNotHorizontalIsReportedAndALidarUpsideDownIsNot) {
+  EXPECT_THAT(scan_plane_warnings(wheeled({})), IsEmpty());
+  EXPECT_THAT(scan_plane_warnings(wheeled({"mounts=[{frame: lidar, z_m: 0.6, pitch_deg: 90.0}]"})),
+              ElementsAre("the scan plane of lidar is tilted by 90 degrees: mapping and navigation need a horizontal "
+                          "one"));
+  EXPECT_THAT(scan_plane_warnings(wheeled({"mounts=[{frame: lidar, z_m: 0.6, roll_deg: 180.0}]"})), IsEmpty());
+}
+
 TEST(ScanReach, TheDefaultsOfTheImporterAreThoseOfTheStack) {
   const localize::ScanLevelerSettings defaults;
   EXPECT_EQ(importer::kDefaultMinHitHeight_m, defaults.min_height_m);
