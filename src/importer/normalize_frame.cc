@@ -32,7 +32,15 @@ void Normalizer::choose_base() {
     const SourceLink& link = source_.link(base_);
     const std::vector<const SourceJoint*> children = source_.child_joints(base_);
     const bool has_mass = link.inertial && link.inertial->mass_kg > 0.0;
-    if (has_mass || link.has_shapes() || children.size() != 1 || kept_.contains(children.front())) break;
+    if (has_mass || children.size() != 1 || kept_.contains(children.front())) break;
+    if (link.has_shapes()) {
+      const SourceJoint& joint = *children.front();
+      if (joint.type != JointType::kFloating || !source_.moves_whole_robot(joint)) break;
+      chassis_.erase(base_);
+      assume(base_,
+             fmt::format("its visuals are left out: they mark the world above the floating joint {}", joint.name),
+             "--base-link LINK");
+    }
     base_ = children.front()->child;
   }
   // A massless root that carries sensors or casters beside the body is no base if one child carries all the wheels.

@@ -51,6 +51,13 @@ const SourceLink& SourceRobot::root() const {
 
 bool SourceRobot::moves_whole_robot(const SourceJoint& joint) const {
   constexpr double kNegligible = 0.01;  // to the mass of the robot
+  const bool is_floating = joint.type == JointType::kFloating;
+  const auto has_own_shapes = [is_floating](const SourceLink& each) {
+    return is_floating ? !each.collisions.empty() : each.has_shapes();
+  };
+  for (const SourceJoint* at = &joint; at != nullptr; at = parent_joint(at->parent)) {
+    if (has_own_shapes(link(at->parent))) return false;
+  }
   std::set<std::string> moved = {joint.child};
   std::vector<std::string> open = {joint.child};
   while (!open.empty()) {
@@ -65,7 +72,7 @@ bool SourceRobot::moves_whole_robot(const SourceJoint& joint) const {
     const double link_kg = each.inertial ? each.inertial->mass_kg : 0.0;
     mass_kg += link_kg;
     if (moved.contains(each.name)) continue;
-    if (each.has_shapes()) return false;
+    if (has_own_shapes(each)) return false;
     other_kg += link_kg;
   }
   return other_kg <= kNegligible * mass_kg;

@@ -106,7 +106,7 @@ struct SourceRobot {
   const SourceLink& root() const;
 
   /// Whether a joint moves the whole robot in the world, as planners need it: the links that it does not move have no
-  /// shapes and at most 1 % of the mass.
+  /// shapes and at most 1 % of the mass. Above a floating joint they may have visuals, which mark the world.
   bool moves_whole_robot(const SourceJoint& joint) const;
 
   [[noreturn]] void fail(int line, const std::string& element, const std::string& what) const;

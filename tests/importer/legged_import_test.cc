@@ -100,6 +100,18 @@ TEST(LeggedImport, AShankThatReachesToTheEndOfItsFootIsReplacedByACylinderAndASh
   EXPECT_THAT(import.assumptions(), HasSubstr("replaced by a cylinder that ends before it"));
 }
 
+TEST(LeggedImport, AMarkerOfTheWorldAboveAFloatingJointIsLeftOut) {
+  std::string text = replaced(vendor_robot().text(), "base_link", "trunk");
+  text = replaced(text, "<link name=\"trunk\">",
+                  "<link name=\"base_link\"><visual><geometry><box size=\"0.01 0.01 0.01\"/></geometry></visual></link>"
+                  "<joint name=\"floating_base\" type=\"floating\"><parent link=\"base_link\"/><child "
+                  "link=\"trunk\"/></joint><link name=\"trunk\">");
+  Import import(text);
+  expect_same_legs(import.load(), described(vendor_robot()), 1e-6);
+  EXPECT_THAT(import.assumptions(), HasSubstr("| base_link | its visuals are left out: they mark the world above the "
+                                              "floating joint floating_base |"));
+}
+
 TEST(LeggedImport, ARobotThatWalksAlongYOfTheFileIsTurned) {
   const std::string text = replaced(vendor_robot().text(), "base_link", "trunk");
   const std::string turned =
