@@ -86,10 +86,10 @@ void release_fixed_wheels(SourceRobot& robot) {
   const double ground_m = lowest_point_m(robot, T_root_link);
   std::vector<FixedWheel> wheels;
   for (SourceJoint& joint : robot.joints) {
-    if (joint.type != JointType::kFixed || is_below_turning_joint(robot, joint, T_root_link)) continue;
+    if (joint.type != JointType::kFixed) continue;
     const FixedWheel wheel = horizontal_cylinder(robot.link(joint.child), T_root_link.at(joint.child), joint);
-    if (wheel.radius_m > 0.0 && wheel.bottom_m() - ground_m <= kTouch * wheel.radius_m + kTouch_m)
-      wheels.push_back(wheel);
+    const bool touches = wheel.radius_m > 0.0 && wheel.bottom_m() - ground_m <= kTouch * wheel.radius_m + kTouch_m;
+    if (touches && !is_below_turning_joint(robot, joint, T_root_link)) wheels.push_back(wheel);
   }
   for (const FixedWheel& wheel : wheels) {
     if (!has_partner(wheel, wheels)) continue;

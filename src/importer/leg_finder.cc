@@ -20,9 +20,16 @@ bool turns(const SourceJoint& joint) {
 /// Returns the movable joints from the root to a joint, this one included. Joints that move the whole robot are no
 /// joints of a leg.
 std::vector<const SourceJoint*> chain_to(const SourceRobot& robot, const SourceJoint& last) {
-  std::vector<const SourceJoint*> chain;
+  std::vector<const SourceJoint*> path;  // from the joint up
   for (const SourceJoint* at = &last; at != nullptr; at = robot.parent_joint(at->parent)) {
-    if (at->type != JointType::kFixed && !robot.moves_whole_robot(*at)) chain.insert(chain.begin(), at);
+    if (at->type != JointType::kFixed) path.push_back(at);
+  }
+  std::vector<const SourceJoint*> chain;
+  std::ranges::reverse(path);
+  for (const SourceJoint* joint : path) {
+    // Below a joint that does not move the whole robot, only floating joints can.
+    const bool can_move_all = chain.empty() || joint->type == JointType::kFloating;
+    if (!can_move_all || !robot.moves_whole_robot(*joint)) chain.push_back(joint);
   }
   return chain;
 }

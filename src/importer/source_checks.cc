@@ -24,11 +24,16 @@ void SourceReader::check_tree() const {
                   fmt::format("child of two joints, {} and {}: only one is allowed", found->second->name, joint.name));
     }
   }
+  std::set<std::string> rooted;  // links whose joints above form no cycle
   for (const SourceLink& link : robot_.links) {
     std::size_t steps = 0;
-    for (auto at = joint_of.find(link.name); at != joint_of.end(); at = joint_of.find(at->second->parent)) {
+    std::vector<std::string> above;
+    for (auto at = joint_of.find(link.name); at != joint_of.end() && !rooted.contains(at->first);
+         at = joint_of.find(at->second->parent)) {
+      above.push_back(at->first);
       if (++steps > joint_of.size()) robot_.fail(at->second->line, link.name, "the joints form a cycle");
     }
+    rooted.insert(above.begin(), above.end());
   }
   const SourceLink* root = nullptr;
   for (const SourceLink& link : robot_.links) {

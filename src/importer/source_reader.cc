@@ -268,10 +268,8 @@ void SourceReader::read_link(const XMLElement& element) {
 
 void SourceReader::read_joint(const XMLElement& element) {
   SourceJoint joint{.name = required_name(element), .line = element.GetLineNum()};
-  for (const SourceJoint& other : robot_.joints) {
-    if (other.name == joint.name)
-      fail(element, joint.name, fmt::format("duplicate joint: also in line {}", other.line));
-  }
+  const auto [other, is_new] = joint_lines_.emplace(joint.name, joint.line);
+  if (!is_new) fail(element, joint.name, fmt::format("duplicate joint: also in line {}", other->second));
   const std::string type = attribute_text(element, "type");
   const auto found = kJointTypes.find(type);
   if (found == kJointTypes.end()) {

@@ -1,6 +1,6 @@
 #include "importer/source_robot.h"
 
-#include <algorithm>
+#include <cstddef>
 #include <numbers>
 #include <set>
 
@@ -16,10 +16,22 @@ bool SourceJoint::is_endless() const {
   return type == JointType::kContinuous || (type == JointType::kRevolute && upper - lower >= kTwoTurns_rad);
 }
 
+/// Adds new links and joints to the index. Of equal names, the first one counts.
+void SourceRobot::extend_index() const {
+  for (; index.num_links < links.size(); ++index.num_links)
+    index.link.try_emplace(links[index.num_links].name, index.num_links);
+  for (; index.num_joints < joints.size(); ++index.num_joints) {
+    const SourceJoint& joint = joints[index.num_joints];
+    index.joint.try_emplace(joint.name, index.num_joints);
+    index.joint_above.try_emplace(joint.child, index.num_joints);
+    index.joints_below[joint.parent].push_back(index.num_joints);
+  }
+}
+
 const SourceLink* SourceRobot::find_link(const std::string& link_name) const {
-  const auto found =
-      std::find_if(links.begin(), links.end(), [&](const SourceLink& link) { return link.name == link_name; });
-  return found == links.end() ? nullptr : &*found;
+  extend_index();
+  const auto found = index.link.find(link_name);
+  return found == index.link.end() ? nullptr : &links[found->second];
 }
 
 const SourceLink& SourceRobot::link(const std::string& link_name) const {
@@ -29,16 +41,23 @@ const SourceLink& SourceRobot::link(const std::string& link_name) const {
 }
 
 const SourceJoint* SourceRobot::parent_joint(const std::string& link_name) const {
-  const auto found =
-      std::find_if(joints.begin(), joints.end(), [&](const SourceJoint& joint) { return joint.child == link_name; });
-  return found == joints.end() ? nullptr : &*found;
+  extend_index();
+  const auto found = index.joint_above.find(link_name);
+  return found == index.joint_above.end() ? nullptr : &joints[found->second];
+}
+
+const SourceJoint* SourceRobot::find_joint(const std::string& joint_name) const {
+  extend_index();
+  const auto found = index.joint.find(joint_name);
+  return found == index.joint.end() ? nullptr : &joints[found->second];
 }
 
 std::vector<const SourceJoint*> SourceRobot::child_joints(const std::string& link_name) const {
+  extend_index();
   std::vector<const SourceJoint*> children;
-  for (const SourceJoint& joint : joints) {
-    if (joint.parent == link_name) children.push_back(&joint);
-  }
+  const auto found = index.joints_below.find(link_name);
+  if (found == index.joints_below.end()) return children;
+  for (const std::size_t i : found->second) children.push_back(&joints[i]);
   return children;
 }
 

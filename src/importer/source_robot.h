@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include <Eigen/Core>
@@ -99,17 +100,29 @@ struct SourceRobot {
   std::vector<SourceSensor> sensors;
   std::vector<Assumption> assumptions;  ///< made by the reader
 
+  /// Positions of links and joints by name, extended by the functions below. Names of added ones must not change.
+  struct Index {
+    std::size_t num_links = 0, num_joints = 0;
+    std::unordered_map<std::string, std::size_t> link, joint, joint_above;
+    std::unordered_map<std::string, std::vector<std::size_t>> joints_below;
+  };
+  mutable Index index = {};
+
   const SourceLink* find_link(const std::string& link_name) const;
   const SourceLink& link(const std::string& link_name) const;
   const SourceJoint* parent_joint(const std::string& link_name) const;  ///< null for the root
   std::vector<const SourceJoint*> child_joints(const std::string& link_name) const;
   const SourceLink& root() const;
+  const SourceJoint* find_joint(const std::string& joint_name) const;
 
   /// Whether a joint moves the whole robot in the world, as planners need it: the links that it does not move have no
   /// shapes and at most 1 % of the mass. Above a floating joint they may have visuals, which mark the world.
   bool moves_whole_robot(const SourceJoint& joint) const;
 
   [[noreturn]] void fail(int line, const std::string& element, const std::string& what) const;
+
+ private:
+  void extend_index() const;
 };
 
 /// Parses a URDF text and loads its meshes. Throws InputError with "file:line: element: what" for a description that is

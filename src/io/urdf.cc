@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -71,14 +72,16 @@ void UrdfReader::check_numbers() const {
 
 /// Reports every joint with a missing parent or child link; the message of urdfdom does not name them.
 void UrdfReader::check_links() const {
+  const auto name_after = [this](std::size_t begin) { return text_.substr(begin, text_.find('"', begin) - begin); };
+  std::set<std::string> links;
+  const std::string link_opening = "<link name=\"";
+  for (std::size_t at = text_.find(link_opening); at != std::string::npos; at = text_.find(link_opening, at + 1))
+    links.insert(name_after(at + link_opening.size()));
   for (const std::string tag : {"parent", "child"}) {
     const std::string opening = "<" + tag + " link=\"";
     for (std::size_t at = text_.find(opening); at != std::string::npos; at = text_.find(opening, at + 1)) {
-      const std::size_t begin = at + opening.size();
-      const std::string link = text_.substr(begin, text_.find('"', begin) - begin);
-      if (text_.find("<link name=\"" + link + "\"") == std::string::npos) {
-        fail(link, "unknown link: " + tag + " of a joint");
-      }
+      const std::string link = name_after(at + opening.size());
+      if (!links.contains(link)) fail(link, "unknown link: " + tag + " of a joint");
     }
   }
 }

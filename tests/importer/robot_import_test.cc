@@ -1,5 +1,6 @@
 #include "importer/robot_import.h"
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -331,6 +332,23 @@ TEST(WriteRobot, RefusesAFolderThatIsNotEmptyAndLeavesNothingBehind) {
   EXPECT_FALSE(std::filesystem::exists(import.folder / "other"));
   std::filesystem::create_directory(import.folder / "empty");
   EXPECT_NO_THROW(write_robot(import.robot, import.folder / "empty"));
+}
+
+// Quadratic searches took 60 s for 6,000 links.
+TEST(ImportRobot, AChainOf4000LinksIsReadWithinSeconds) {
+  std::string chain, parent = "base_link";
+  for (int i = 0; i < 4000; ++i) {
+    const std::string name = fmt::format("part_{}", i);
+    chain += joint(name + "_joint", i % 2 == 0 ? "fixed" : "revolute", parent, name, "0 0 0.0001",
+                   axis("0 1 0") + R"(<limit lower="-1" upper="1"/>)") +
+             link(name);
+    parent = name;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  Import import(with(chain));
+  import_robot(import.options);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(elapsed.count(), 8.0);
 }
 
 }  // namespace
