@@ -160,9 +160,24 @@ void Normalizer::choose_drive() {
            "<limit effort velocity> of the driven wheels' joints, or <transmission>");
   }
   for (const FoundWheel* wheel : chosen) driven_.insert(wheel->joint);
+  const auto has_motor = [this](const SourceJoint& joint) {
+    return driven_.contains(&joint) || source_.motors.contains(joint.name) || joint.effort.value_or(0.0) > 0.0;
+  };
+  const std::set<const SourceJoint*> driven_alone = driven_;
   for (const FoundWheel* wheel : mimicking) {
-    if (driven_.insert(wheel->joint).second || wheel->joint->is_mimic)
-      assume(wheel->joint->name, "has a motor: its <mimic> follows a driven wheel", "<mimic> of the joint");
+    const SourceJoint* at = source_.find_joint(wheel->joint->mimicked);
+    while (at->is_mimic && !has_motor(*at)) at = source_.find_joint(at->mimicked);
+    if (has_motor(*at)) {
+      driven_.insert(wheel->joint);
+      const bool is_wheel = driven_alone.contains(at);
+      assume(
+          wheel->joint->name,
+          fmt::format("has a motor: its <mimic> follows {}{}", is_wheel ? "a driven wheel, " : "the motor ", at->name),
+          "<mimic> of the joint");
+    } else if (!driven_.contains(wheel->joint)) {
+      assume(wheel->joint->name, fmt::format("has no motor: its <mimic> follows {}, which has none", at->name),
+             "<mimic> of the joint");
+    }
   }
   double min_y = std::numeric_limits<double>::infinity(), max_y = -min_y;
   for (const FoundWheel* wheel : candidates) {

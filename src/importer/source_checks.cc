@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "importer/source_reader.h"
+#include "io/files/one_line.h"
 
 namespace patrol::importer {
 namespace {
@@ -42,6 +43,21 @@ void SourceReader::check_tree() const {
       robot_.fail(link.line, link.name,
                   fmt::format("is not connected: the robot has two roots, {} and {}", root->name, link.name));
     root = &link;
+  }
+}
+
+/// Refuses joints that mimic an unknown joint or, by a chain of joints, themselves.
+void SourceReader::check_mimics() const {
+  for (const SourceJoint& joint : robot_.joints) {
+    std::set<const SourceJoint*> followed = {&joint};
+    for (const SourceJoint* at = &joint; at->is_mimic;) {
+      const SourceJoint* next = robot_.find_joint(at->mimicked);
+      if (next == nullptr)
+        robot_.fail(at->mimic_line, at->name, fmt::format("<mimic>: unknown joint: {}", io::on_one_line(at->mimicked)));
+      if (next == &joint) robot_.fail(joint.mimic_line, joint.name, "<mimic>: the joint follows itself");
+      if (!followed.insert(next).second) break;  // refused at a joint of the cycle
+      at = next;
+    }
   }
 }
 

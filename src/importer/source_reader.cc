@@ -323,8 +323,16 @@ void SourceReader::read_joint(const XMLElement& element) {
     joint.damping = std::max(0.0, optional_number(*dynamics, "damping", joint.name).value_or(0.0));
     joint.friction = std::max(0.0, optional_number(*dynamics, "friction", joint.name).value_or(0.0));
   }
-  joint.is_mimic = element.FirstChildElement("mimic") != nullptr;
+  if (const XMLElement* mimic = element.FirstChildElement("mimic")) read_mimic(*mimic, joint);
   robot_.joints.push_back(std::move(joint));
+}
+
+void SourceReader::read_mimic(const XMLElement& mimic, SourceJoint& joint) const {
+  joint.is_mimic = true;
+  joint.mimic_line = mimic.GetLineNum();
+  joint.mimicked = attribute_text(mimic, "joint");
+  if (joint.mimicked.empty()) fail(mimic, joint.name, "<mimic>: joint is missing");
+  for (const char* attribute : {"multiplier", "offset"}) optional_number(mimic, attribute, joint.name);
 }
 
 SourceRobot SourceReader::read() {
@@ -345,6 +353,7 @@ SourceRobot SourceReader::read() {
   if (robot_.links.empty()) fail(*root, "<robot>", "has no links");
   for_each("joint", [this](const XMLElement& element) { read_joint(element); });
   check_tree();
+  check_mimics();
   check_missing_visuals();
   report_meshes_elsewhere();
   check_inertias();

@@ -64,6 +64,7 @@ class SourceReader {
   SourceInertial read_inertial(const tinyxml2::XMLElement& element, const std::string& link) const;
   void read_link(const tinyxml2::XMLElement& element);
   void read_joint(const tinyxml2::XMLElement& element);
+  void read_mimic(const tinyxml2::XMLElement& mimic, SourceJoint& joint) const;
   Eigen::Vector3d read_scale(const tinyxml2::XMLElement& element, const std::string& link);
   void read_mesh(const tinyxml2::XMLElement& element, const std::string& link, Shape& shape);
   void read_motors(const tinyxml2::XMLElement& root);
@@ -75,6 +76,7 @@ class SourceReader {
   void read_scan_field(const tinyxml2::XMLElement& sensor, SourceSensor& found);
   void report_unknown_link(const std::string& link, int line, const std::string& override_with);
   void check_tree() const;
+  void check_mimics() const;
   void check_inertias();
   void check_missing_visuals();
   bool has_rigid_collision(const std::string& link) const;

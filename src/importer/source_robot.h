@@ -75,6 +75,8 @@ struct SourceJoint {
   std::optional<double> effort = {}, velocity = {};
   double damping = 0.0, friction = 0.0;
   bool is_mimic = false;
+  std::string mimicked = {};  ///< joint that <mimic> follows
+  int mimic_line = 0;
 
   /// Whether the joint turns without end: continuous, or at least two full turns.
   bool is_endless() const;

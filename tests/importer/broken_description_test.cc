@@ -272,6 +272,22 @@ TEST(BrokenDescription, Wheels) {
               HasSubstr("v.urdf:"));
 }
 
+TEST(BrokenDescription, Mimics) {
+  const auto with_mimic = [](const std::string& mimic) {
+    return complaint(changed("<limit effort=\"10\" velocity=\"12\"/>", mimic));
+  };
+  EXPECT_EQ(with_mimic("<mimic joint=\"right_joint\" multiplier=\"-1\" offset=\"0.5\"/>"), "");
+  EXPECT_EQ(with_mimic("<mimic joint=\"ghost\"/>"), "v.urdf:4: left_joint: <mimic>: unknown joint: ghost");
+  EXPECT_EQ(with_mimic("<mimic/>"), "v.urdf:4: left_joint: <mimic>: joint is missing");
+  EXPECT_EQ(with_mimic("<mimic joint=\"left_joint\"/>"), "v.urdf:4: left_joint: <mimic>: the joint follows itself");
+  EXPECT_EQ(with_mimic("<mimic joint=\"right_joint\" multiplier=\"x\"/>"),
+            "v.urdf:4: left_joint: multiplier = \"x\": must be finite numbers");
+  std::string cycle = changed("<limit effort=\"10\" velocity=\"12\"/>", "<mimic joint=\"right_joint\"/>");
+  cycle.replace(cycle.find("<limit"), cycle.find("/>", cycle.find("<limit")) + 2 - cycle.find("<limit"),
+                "<mimic joint=\"left_joint\"/>");
+  EXPECT_EQ(complaint(cycle), "v.urdf:4: left_joint: <mimic>: the joint follows itself");
+}
+
 TEST(BrokenDescription, ADrivenLinkThatIsNoWheelIsNamedWithItsReason) {
   const std::string round = "<cylinder radius=\"0.1\" length=\"0.04\"/>";
   EXPECT_THAT(complaint(changed(round, "<box size=\"0.2 0.2 0.04\"/>")),

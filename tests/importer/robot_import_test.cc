@@ -334,6 +334,24 @@ TEST(WriteRobot, RefusesAFolderThatIsNotEmptyAndLeavesNothingBehind) {
   EXPECT_NO_THROW(write_robot(import.robot, import.folder / "empty"));
 }
 
+TEST(ImportRobot, AMimicWheelHasAMotorOnlyIfItFollowsAMotor) {
+  const auto with_rear = [](const std::string& mimic) {
+    return robot(chassis() + two_wheels() + wheel("rl", "base_link", "-0.2 0.25 -0.05", 0.1, 0.04, mimic) +
+                 wheel("rr", "base_link", "-0.2 -0.25 -0.05", 0.1, 0.04, mimic) +
+                 joint("arm_joint", "revolute", "base_link", "arm", "0 0 0.1",
+                       axis("0 1 0") + R"(<limit lower="-1" upper="1"/>)") +
+                 link("arm", inertial(0.1)));
+  };
+  Import driven(with_rear("<mimic joint=\"left_joint\"/>"));
+  driven.load();
+  EXPECT_THAT(driven.assumptions(), HasSubstr("has a motor: its &lt;mimic> follows a driven wheel, left_joint"));
+  EXPECT_TRUE(driven.wheel("rl").drive_joint.has_value());
+  Import passive(with_rear("<mimic joint=\"arm_joint\"/>"));
+  passive.load();
+  EXPECT_THAT(passive.assumptions(), HasSubstr("has no motor: its &lt;mimic> follows arm_joint, which has none"));
+  EXPECT_FALSE(passive.wheel("rl").drive_joint.has_value());
+}
+
 // Quadratic searches took 60 s for 6,000 links.
 TEST(ImportRobot, AChainOf4000LinksIsReadWithinSeconds) {
   std::string chain, parent = "base_link";
