@@ -16,6 +16,10 @@ namespace patrol::importer {
 void Normalizer::check_options() const {
   if (!options_.base_link.empty() && source_.find_link(options_.base_link) == nullptr)
     throw InputError(fmt::format("{}: base link {}: unknown link", source_.file, io::on_one_line(options_.base_link)));
+  for (const std::string& link : options_.casters) {
+    if (source_.find_link(link) == nullptr)
+      throw InputError(fmt::format("{}: caster {}: unknown link", source_.file, io::on_one_line(link)));
+  }
   for (const auto& [frame, link] : options_.frames) {
     if (std::find(kSensorFrames.begin(), kSensorFrames.end(), frame) == kSensorFrames.end()) {
       throw InputError(fmt::format("{}: frame {}: unknown sensor frame: must be {}", source_.file,
@@ -328,6 +332,7 @@ NormalizedRobot Normalizer::run() {
     add_chassis();
     add_legs();
   } else {
+    refuse_unturned_wheels();
     add_supports();
     add_chassis();
     add_wheels();

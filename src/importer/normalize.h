@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "importer/normalized_robot.h"
@@ -14,7 +15,8 @@ struct NormalizeOptions {
   std::string base_link;                      ///< link of the file; empty: by rule
   std::string forward;                        ///< direction of travel in the base: x, -x, y or -y; empty: by the axles
   std::map<std::string, std::string> frames;  ///< sensor frame of Patrol to link of the file
-  std::string drive;                          ///< differential, ackermann, mecanum or legs; empty: by rule
+  std::set<std::string> casters = {};         ///< links of the file that slide although they look like wheels
+  std::string drive = {};                     ///< differential, ackermann, mecanum or legs; empty: by rule
 };
 
 /// Turns a description into Patrol's conventions (importer/README.md). Throws InputError with file, line and element.

@@ -145,6 +145,7 @@ class Normalizer {
   Shape shank_of(const Foot& foot) const;
   void add_legs();
   void check_legged_balance();
+  void refuse_unturned_wheels() const;
   void add_supports();
   double take_from_base(double wanted_kg);
   void strengthen_casters(double robot_mass_kg);

@@ -38,6 +38,7 @@ ImportedRobot import_robot(const RobotImportOptions& options) {
                                                    .base_link = options.base_link,
                                                    .forward = options.forward,
                                                    .frames = options.frames,
+                                                   .casters = options.casters,
                                                    .drive = options.drive});
   require_folder_name(robot.name, file, "robot");
   const std::string origin = options.file.filename().string();

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@ struct RobotImportOptions {
   std::string base_link = {};  ///< link of the file; empty: by rule
   std::string forward = {};    ///< direction of travel in the base link: x, -x, y, -y; empty: by rule
   std::map<std::string, std::string> frames = {};  ///< sensor frame of Patrol to link of the file
+  std::set<std::string> casters = {};              ///< links of the file that slide although they look like wheels
   std::string drive = {};                          ///< differential, ackermann, mecanum or legs; empty: by rule
 };
 

@@ -44,6 +44,11 @@ void add_robot(CLI::App& command, ImportRobotOptions& robot) {
       ->take_all()
       ->group(kRobots);
   command.add_option("--base-link", robot.base_link, "Link of the chassis (default: by rule)")->group(kRobots);
+  command
+      .add_option("--caster", robot.casters,
+                  "Link that slides on the ground although it looks like a wheel (repeatable)")
+      ->take_all()
+      ->group(kRobots);
   command.add_option("--forward", robot.forward, "Direction of travel in the base link (default: by rule)")
       ->check(CLI::IsMember({"x", "-x", "y", "-y"}))
       ->group(kRobots);

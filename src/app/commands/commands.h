@@ -228,7 +228,8 @@ struct ImportRobotOptions {
   std::vector<std::string> xacro_arguments;  ///< NAME=VALUE
   std::vector<std::string> frames;           ///< FRAME=LINK: sensor frames of Patrol
   std::string base_link;
-  std::string forward;  ///< direction of travel in the base link
+  std::vector<std::string> casters;  ///< links
+  std::string forward;               ///< direction of travel in the base link
   std::string drive;
   std::filesystem::path out;  ///< folder models/NAME
 };

@@ -114,6 +114,7 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
                               .base_link = options.base_link,
                               .forward = options.forward,
                               .frames = to_map<std::string>(options.frames, "--frame"),
+                              .casters = {options.casters.begin(), options.casters.end()},
                               .drive = options.drive});
   refuse_known_name(robot.name, options.out);
   check_joint_speeds(robot);
