@@ -34,4 +34,17 @@ void Normalizer::choose_scan_band() {
          fmt::format("stack.scan_leveling in {}.yaml", result_.name));
 }
 
+/// Chooses the distance of a robot with steered wheels from keep-out lines such as curbs, from the smaller side of its
+/// outline.
+void Normalizer::choose_keep_out_margin(double width_m) {
+  // As models/cart, whose discs are 0.17 m from its sides and which keeps 0.30 m. The default is 0.2 m.
+  constexpr double kBeside_m = 0.13, kDefault_m = 0.2, kMax_m = 1.0;
+  const double disc_m = 0.25 * width_m;  // from the centers of two rows of discs to the side
+  result_.keep_out_margin_m = std::clamp(std::floor(100.0 * (disc_m + kBeside_m)) / 100.0, kDefault_m, kMax_m);
+  assume("keep-out lines",
+         fmt::format("stay {:.2f} m from the centers of the discs of its outline, and so {:.2f} m from its sides",
+                     result_.keep_out_margin_m, result_.keep_out_margin_m - disc_m),
+         fmt::format("stack.navigation.costmap.keep_out_margin_m in {}.yaml", result_.name));
+}
+
 }  // namespace patrol::importer

@@ -339,13 +339,16 @@ void Normalizer::finish() {
   }
   check_mass();
   result_.assumptions = joined(result_.assumptions);
-  double front_m = -std::numeric_limits<double>::infinity(), rear_m = -front_m;
+  double front_m = -std::numeric_limits<double>::infinity(), rear_m = -front_m, left_m = front_m, right_m = rear_m;
   for (const std::string& name : chassis_) {
     const SourceLink& link = source_.link(name);
     for (const Shape& shape : link.collisions.empty() ? link.visuals : link.collisions) {
       for (const Eigen::Vector3d& point : outline(shape)) {
-        front_m = std::max(front_m, (T_base(name) * point).x());
-        rear_m = std::min(rear_m, (T_base(name) * point).x());
+        const Eigen::Vector3d p = T_base(name) * point;
+        front_m = std::max(front_m, p.x());
+        rear_m = std::min(rear_m, p.x());
+        left_m = std::max(left_m, p.y());
+        right_m = std::min(right_m, p.y());
       }
     }
   }
@@ -353,6 +356,8 @@ void Normalizer::finish() {
   for (const FoundWheel& wheel : found_.wheels) {
     front_m = std::max(front_m, wheel.center_m.x() + wheel.radius_m);
     rear_m = std::min(rear_m, wheel.center_m.x() - wheel.radius_m);
+    left_m = std::max(left_m, wheel.center_m.y() + 0.5 * wheel.width_m);
+    right_m = std::min(right_m, wheel.center_m.y() - 0.5 * wheel.width_m);
     if (wheel.carrier_type == CarrierType::kSteering) {
       steered_x += wheel.center_m.x();
       ++num_steered;
@@ -364,6 +369,7 @@ void Normalizer::finish() {
     }
   }
   result_.length_m = front_m - rear_m;
+  if (result_.drive == DriveType::kAckermann) choose_keep_out_margin(std::min(left_m - right_m, front_m - rear_m));
   if (num_steered > 0.0) {
     const double wheelbase_m = std::abs(steered_x / num_steered - fixed_x / num_fixed);
     result_.min_turning_radius_m = wheelbase_m / std::tan(std::clamp(max_angle, kMinSteering_rad, 1.5));

@@ -162,6 +162,8 @@ class Normalizer {
   void check_scan_plane(const std::string& frame);
   void choose_preset(const std::string& frame, const SourceSensor& sensor);
   void choose_scan_band();
+  void choose_keep_out_margin(double width_m);
+  void check_densities();
   void finish();
 
   std::vector<const SourceLink*> moving_group(const SourceJoint& joint) const;

@@ -70,6 +70,7 @@ std::string wheel_settings(const NormalizedRobot& robot) {
   text += "    approach_deceleration_mps2: 0.25\n";
   text += fmt::format("    recovery: {{behaviors: [{}], max_attempts: 6}}\n",
                       is_ackermann ? "wait, back_up" : "wait, back_up, spin");
+  if (is_ackermann) text += fmt::format("    costmap: {{keep_out_margin_m: {:.2f}}}\n", robot.keep_out_margin_m);
   text += "    local_planner:\n";
   text += fmt::format("      dwa: {{max_speed_mps: {:.2f}, max_acceleration_mps2: 0.5{}}}\n", planner_speed_mps,
                       robot.drive == DriveType::kMecanum

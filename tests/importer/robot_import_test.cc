@@ -119,6 +119,10 @@ TEST(ImportRobot, SteeredFrontWheelsAreAnAckermannDrive) {
   EXPECT_NEAR(robot.mass_kg, 25.0, 1e-6);
   expect_footprint(robot, -0.3, 0.5, -0.275, 0.275);
   EXPECT_THAT(import.robot.settings, HasSubstr("kinematics: ackermann"));
+  // A quarter of the width of 0.55 m, and 0.13 m.
+  EXPECT_THAT(import.robot.settings, HasSubstr("    costmap: {keep_out_margin_m: 0.26}\n"));
+  EXPECT_THAT(import.assumptions(), HasSubstr("| keep-out lines | stay 0.26 m from the centers of the discs of its "
+                                              "outline, and so 0.12 m from its sides |"));
 }
 
 TEST(ImportRobot, ASteeringAxisThatPointsDownKeepsItsSign) {
