@@ -313,21 +313,6 @@ void Normalizer::check_ramps() {
   }
 }
 
-/// Reports a mass that no robot for inspection has.
-void Normalizer::check_mass() {
-  constexpr double kMax_kg = 20000.0;
-  const double mass_kg = total_mass_kg();
-  if (mass_kg <= kMax_kg) return;
-  const auto mass_of = [](const NormalizedLink& link) { return link.inertial ? link.inertial->mass_kg : 0.0; };
-  const auto heaviest = std::max_element(
-      result_.links.begin(), result_.links.end(),
-      [&mass_of](const NormalizedLink& a, const NormalizedLink& b) { return mass_of(a) < mass_of(b); });
-  assume("mass",
-         fmt::format("{:.0f} kg of the file are kept, although more than {:.0f} kg are unlikely: {} has {:.0f} kg",
-                     mass_kg, kMax_kg, heaviest->name, mass_of(*heaviest)),
-         "<mass> of the links");
-}
-
 /// Computes the length and the turning radius, for the settings.
 void Normalizer::finish() {
   if (result_.drive == DriveType::kLegs) {
@@ -338,6 +323,7 @@ void Normalizer::finish() {
     check_ramps();
   }
   check_mass();
+  check_densities();
   result_.assumptions = joined(result_.assumptions);
   double front_m = -std::numeric_limits<double>::infinity(), rear_m = -front_m, left_m = front_m, right_m = rear_m;
   for (const std::string& name : chassis_) {

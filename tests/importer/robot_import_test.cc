@@ -356,6 +356,16 @@ TEST(ImportRobot, AMimicWheelHasAMotorOnlyIfItFollowsAMotor) {
   EXPECT_FALSE(passive.wheel("rl").drive_joint.has_value());
 }
 
+TEST(ImportRobot, ALinkDenserThanAnyMaterialIsARow) {
+  Import import(robot(link("base_link", inertial(19000.0, "0 0 0", 500.0) + shape("collision", box(0.6, 0.4, 0.2))) +
+                      two_wheels() + caster()));
+  import.load();
+  EXPECT_THAT(import.assumptions(),
+              HasSubstr("| base_link | 1.9e+04 kg of the file are kept, although its shapes of 0.048 m3 would be of "
+                        "395833 kg/m3: more than 25000 kg/m3 are unlikely |"));
+  EXPECT_THAT(import.assumptions(), Not(HasSubstr("| left | 1 kg of the file")));
+}
+
 // Quadratic searches took 60 s for 6,000 links.
 TEST(ImportRobot, AChainOf4000LinksIsReadWithinSeconds) {
   std::string chain, parent = "base_link";
