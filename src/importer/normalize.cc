@@ -96,7 +96,8 @@ void Normalizer::choose_carriers() {
     }
   }
   if (num_steered > 0 && num_steered == found_.wheels.size()) {
-    throw InputError(fmt::format("{}: {}", source_.file, all_steered(num_steered)));
+    const SourceJoint& joint = *found_.wheels.front().carrier;
+    source_.fail(joint.line, joint.name, all_steered(num_steered));
   }
   if (options_.drive == "ackermann" && num_steered == 0) {
     throw InputError(
@@ -299,6 +300,7 @@ std::string Normalizer::link_name(const std::string& source_name) {
   std::string name = is_reserved_link(source_name) ? source_name + "_part" : source_name;
   name = unique(used_links_, name, "_part");
   link_names_[source_name] = name;
+  result_.source_links[name] = source_name;
   if (name != source_name)
     assume(source_name, fmt::format("is renamed to {}: the name has a meaning in Patrol", name), "name of the link");
   return name;

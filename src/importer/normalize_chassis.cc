@@ -198,15 +198,20 @@ Inertial Normalizer::moving_inertial(const std::vector<const SourceLink*>& links
 
 /// Adds base_link and the links that are fixed to it.
 void Normalizer::add_chassis() {
-  bool has_collision = false;
+  bool has_collision = false, has_visual = false;
   double mass_kg = 0.0;
   for (const std::string& name : chassis_) {
     const SourceLink& link = source_.link(name);
     has_collision = has_collision || !link.collisions.empty();
+    has_visual = has_visual || !link.visuals.empty();
     if (link.inertial) mass_kg += link.inertial->mass_kg;
   }
   if (!has_collision)
-    assume("chassis", "has no <collision>: contact and footprint are those of the visuals", "<collision> of the links");
+    assume("chassis",
+           has_visual ? "has no <collision>: contact and footprint are those of the visuals"
+                      : "has neither <collision> nor <visual>: it touches nothing, and the footprint is that of the "
+                        "wheels or legs",
+           "<collision> of the links");
   std::vector<const SourceLink*> links = {&source_.link(base_)};
   for (const SourceLink& link : source_.links) {
     if (chassis_.contains(link.name) && link.name != base_) links.push_back(&link);

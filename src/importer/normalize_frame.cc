@@ -43,6 +43,7 @@ void Normalizer::choose_base() {
     }
     base_ = children.front()->child;
   }
+  result_.source_links["base_link"] = base_;
   // A massless root that carries sensors or casters beside the body is no base if one child carries all the wheels.
   if (base_ != "base_link") {
     assume("base_link", fmt::format("is the link {} of the file, renamed", base_), "--base-link LINK");
@@ -87,8 +88,9 @@ void Normalizer::choose_frame() {
     const bool is_steered = std::all_of(found_.wheels.begin(), found_.wheels.end(), [&](const FoundWheel& wheel) {
       return is_driven(*wheel.joint) && is_driven(*wheel.carrier);
     });
-    fail_for_wheels(nullptr, is_steered ? all_steered(found_.wheels.size())
-                                        : "all wheels are casters: at least two wheels must not swivel");
+    fail_for_wheels(found_.wheels.front().carrier, is_steered
+                                                       ? all_steered(found_.wheels.size())
+                                                       : "all wheels are casters: at least two wheels must not swivel");
   }
   if (!options_.forward.empty()) {
     yaw = yaws.at(options_.forward);

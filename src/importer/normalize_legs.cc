@@ -200,6 +200,7 @@ void Normalizer::add_legs() {
       result_.links.push_back(std::move(target));
     }
     NormalizedLink tip{.name = unique(used_links_, parent + "_foot", "_ball")};
+    result_.source_links[tip.name] = leg.joints.back()->child;
     tip.joint = NormalizedJoint{.name = unique(used_joints_, tip.name + "_joint", "_ball"),
                                 .parent = parent,
                                 .T_parent_link = translation(foot.center_m)};

@@ -83,6 +83,7 @@ struct NormalizedRobot {
   std::string roller_pattern = "x";
   double roller_angle_rad = 0.25 * std::numbers::pi;
   std::vector<Assumption> assumptions = {};
+  std::map<std::string, std::string> source_links = {};  ///< link of the result to link of the file
 };
 
 /// Returns the combined mass and inertia, in the frame of the first pose's parent.

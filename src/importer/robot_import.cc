@@ -1,6 +1,8 @@
 #include "importer/robot_import.h"
 
+#include <cstddef>
 #include <regex>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -41,6 +43,9 @@ ImportedRobot import_robot(const RobotImportOptions& options) {
                                                    .casters = options.casters,
                                                    .drive = options.drive});
   require_folder_name(robot.name, file, "robot");
+  std::map<std::string, std::string> sources;
+  for (const auto& [link, name] : robot.source_links)
+    sources[link] = fmt::format("{}: {}", source.link(name).line, io::on_one_line(name));
   const std::string origin = options.file.filename().string();
   return {
       .name = robot.name,
@@ -52,7 +57,8 @@ ImportedRobot import_robot(const RobotImportOptions& options) {
                                                  "robot from {}.",
                                                  io::on_one_line(robot.name), io::on_one_line(origin))),
       .meshes = robot.meshes,
-      .assumptions = robot.assumptions};
+      .assumptions = robot.assumptions,
+      .sources = std::move(sources)};
 }
 
 void write_robot(const ImportedRobot& robot, const std::filesystem::path& folder) {
@@ -70,7 +76,12 @@ void write_robot(const ImportedRobot& robot, const std::filesystem::path& folder
     std::string message = refused.what();
     if (message.starts_with(urdf))
       message = std::regex_replace(message.substr(urdf.size()), std::regex("^:([0-9]+:)? *"), "");
-    throw InputError(fmt::format("{}: the robot cannot be simulated: {}", robot.file, message));
+    const std::size_t end = message.find(": ");
+    const auto named = end == std::string::npos ? robot.sources.end() : robot.sources.find(message.substr(0, end));
+    if (named == robot.sources.end())
+      throw InputError(fmt::format("{}: the robot cannot be simulated: {}", robot.file, message));
+    throw InputError(
+        fmt::format("{}:{}: the robot cannot be simulated: {}", robot.file, named->second, message.substr(end + 2)));
   }
   output.publish();
 }

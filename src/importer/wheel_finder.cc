@@ -22,6 +22,12 @@ constexpr int kMinRollers = 4;
 constexpr double kMinRollerAngle_rad = 0.35, kMaxRollerAngle_rad = 1.22;  // to the axle, of mecanum wheels
 constexpr double kMaxRollerSpread_rad = 0.1;                              // of the angles of a wheel
 
+/// Returns the height of a wheel above the lowest one up to which it touches the ground.
+double ground_gap_m(const FoundWheel& wheel) {
+  constexpr double kMaxReaderGap_m = 0.01;
+  return std::min(0.02 * wheel.radius_m + 0.005, kMaxReaderGap_m);
+}
+
 /// Finder of the wheels of one description.
 class WheelFinder {
  public:
@@ -44,6 +50,7 @@ class WheelFinder {
   bool is_above_all_wheels(const SourceJoint& joint) const;
   bool swivels(const SourceJoint& joint) const;
   void check_upright() const;
+  void refuse_one_low_wheel() const;
   void keep_wheels_on_ground();
   void leave_out_passive_balls();
   std::vector<AxialShape> axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
@@ -263,14 +270,31 @@ void WheelFinder::check_upright() const {
                           robot_.root().name));
 }
 
+/// Refuses one wheel below at least two others that are on one plane.
+void WheelFinder::refuse_one_low_wheel() const {
+  if (found_.wheels.size() < 3) return;
+  const auto is_lower = [](const FoundWheel& a, const FoundWheel& b) { return a.bottom_m() < b.bottom_m(); };
+  const auto low = std::min_element(found_.wheels.begin(), found_.wheels.end(), is_lower);
+  double min_m = std::numeric_limits<double>::infinity(), max_m = -min_m;  // of the others
+  for (const FoundWheel& wheel : found_.wheels) {
+    if (&wheel == &*low) continue;
+    min_m = std::min(min_m, wheel.bottom_m());
+    max_m = std::max(max_m, wheel.bottom_m());
+  }
+  const double below_m = min_m - low->bottom_m(), gap_m = ground_gap_m(*low);
+  if (below_m <= gap_m || max_m - min_m > gap_m || below_m >= 0.5 * low->radius_m) return;
+  robot_.fail(low->joint->line, low->joint->child,
+              fmt::format("is {:.3f} m below the other wheels: all wheels must touch one plane", below_m));
+}
+
 /// Keeps the wheels on the ground plane. A candidate far above it is another round part, for example a spinning sensor.
 void WheelFinder::keep_wheels_on_ground() {
   found_.ground_m = std::numeric_limits<double>::infinity();
   for (const FoundWheel& wheel : found_.wheels) found_.ground_m = std::min(found_.ground_m, wheel.bottom_m());
+  refuse_one_low_wheel();
   std::erase_if(found_.wheels, [this](const FoundWheel& wheel) {
     const double above_m = wheel.bottom_m() - found_.ground_m;
-    constexpr double kMaxReaderGap_m = 0.01;
-    if (above_m <= std::min(0.02 * wheel.radius_m + 0.005, kMaxReaderGap_m)) return false;
+    if (above_m <= ground_gap_m(wheel)) return false;
     if (above_m < 0.5 * wheel.radius_m) {
       robot_.fail(wheel.joint->line, wheel.joint->child,
                   fmt::format("is {:.3f} m above the lowest wheel: all wheels must touch one plane", above_m));

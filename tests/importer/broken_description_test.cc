@@ -318,8 +318,8 @@ TEST(BrokenDescription, ARobotWhoseWheelsAreAllSteeredByMotorsWithoutEnd) {
     return robot(text);
   };
   EXPECT_EQ(complaint(modules(R"(<limit effort="30" velocity="3"/>)")),
-            "v.urdf: all 4 wheels are steered: not supported: fix the steering joints of one axle");
-  EXPECT_EQ(complaint(modules("")), "v.urdf: all wheels are casters: at least two wheels must not swivel");
+            "v.urdf:4: fl_steer: all 4 wheels are steered: not supported: fix the steering joints of one axle");
+  EXPECT_EQ(complaint(modules("")), "v.urdf:4: fl_steer: all wheels are casters: at least two wheels must not swivel");
 }
 
 TEST(BrokenDescription, ATrailerOnAnEndlessHitch) {

@@ -112,6 +112,15 @@ TEST(LeggedImport, AMarkerOfTheWorldAboveAFloatingJointIsLeftOut) {
                                               "floating joint floating_base |"));
 }
 
+TEST(LeggedImport, LegsThatCannotBeSimulatedAreNamedByALinkAndALineOfTheFile) {
+  UrdfQuadruped robot = vendor_robot();
+  robot.frames = {};
+  Import import(replaced(robot.text(), "<axis xyz=\"1.000000000000 0.000000000000 0.000000000000\"/>",
+                         "<axis xyz=\"0.6 0 0.8\"/>"));
+  const std::string message = complaint(import);
+  EXPECT_THAT(message, testing::MatchesRegex("vendor.urdf:[0-9]+: [a-z]+_2: the robot cannot be simulated: .*"));
+}
+
 TEST(LeggedImport, ARobotThatWalksAlongYOfTheFileIsTurned) {
   const std::string text = replaced(vendor_robot().text(), "base_link", "trunk");
   const std::string turned =
@@ -193,14 +202,16 @@ TEST(LeggedImport, APlanarJointAboveTheTrunkIsNoJointOfALeg) {
 }
 
 // Three joints in a row that are all about the vertical are no leg that can walk.
-TEST(LeggedImport, ARobotThatCannotBeSimulatedIsRefusedWithoutALineOfTheFileThatIsNotWritten) {
+TEST(LeggedImport, ARobotThatCannotBeSimulatedIsRefusedByALineOfItsFileAndNoneOfTheFileThatIsNotWritten) {
   const UrdfQuadruped plain;
   Import import(std::regex_replace(plain.text(), std::regex("<axis xyz=\"[^\"]*\"/>"), axis("0 0 1")));
   try {
     import.load();
     ADD_FAILURE();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::StartsWith(import.options.file.string() + ": the robot cannot be simulated: "));
+    EXPECT_THAT(error.what(), testing::StartsWith(import.options.file.string() + ":"));
+    EXPECT_THAT(error.what(),
+                testing::MatchesRegex(".*vendor.urdf:[0-9]+: [a-z]+_2: the robot cannot be simulated: .*"));
     EXPECT_THAT(error.what(), Not(HasSubstr("imported.urdf")));
   }
 }

@@ -42,5 +42,12 @@ TEST(WheelFinder, OneOfFourWheelsThatDoesNotTurnAboutItsAxleIsRefusedUnlessItIsA
   EXPECT_EQ(refusal(four_wheels("fixed", "0 1 0"), {"nothing"}), "vendor.urdf: caster nothing: unknown link");
 }
 
+TEST(WheelFinder, OneWheelBelowTheOthersIsNamed) {
+  EXPECT_EQ(refusal(four_wheels("continuous", "0 1 0", "-0.08")),
+            "vendor.urdf:4: fl: is 0.030 m below the other wheels: all wheels must touch one plane");
+  EXPECT_EQ(refusal(four_wheels("continuous", "0 1 0", "-0.02")),
+            "vendor.urdf:4: fl: is 0.030 m above the lowest wheel: all wheels must touch one plane");
+}
+
 }  // namespace
 }  // namespace patrol::importer::normalize_lookalikes_test

@@ -366,6 +366,13 @@ TEST(ImportRobot, ALinkDenserThanAnyMaterialIsARow) {
   EXPECT_THAT(import.assumptions(), Not(HasSubstr("| left | 1 kg of the file")));
 }
 
+TEST(ImportRobot, AChassisWithoutAnyShapeIsARowThatNamesNoVisuals) {
+  Import import(robot(link("base_link", inertial(20.0, "0 0 0", 0.5)) + two_wheels() + caster()));
+  import.load();
+  EXPECT_THAT(import.assumptions(), HasSubstr("| chassis | has neither &lt;collision> nor &lt;visual>: it touches "
+                                              "nothing"));
+}
+
 // Quadratic searches took 60 s for 6,000 links.
 TEST(ImportRobot, AChainOf4000LinksIsReadWithinSeconds) {
   std::string chain, parent = "base_link";

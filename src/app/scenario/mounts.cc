@@ -120,6 +120,7 @@ YAML::Node find_node(const YAML::Node& document, const std::vector<std::string>&
 }
 
 std::string location_of(const std::filesystem::path& file, const YAML::Node& node, const std::string& key) {
+  if (file.empty()) return key;  // settings of a run without a file
   const int line = node.IsDefined() ? io::line_of(node) : 0;
   return line > 0 ? fmt::format("{}:{}: {}", file.string(), line, key) : fmt::format("{}: {}", file.string(), key);
 }

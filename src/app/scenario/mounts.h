@@ -31,7 +31,7 @@ std::vector<io::SensorMount> sensor_mounts(const std::vector<MountSettings>& mou
 /// Returns the node of a path below a node; undefined if there is none.
 YAML::Node find_node(const YAML::Node& document, const std::vector<std::string>& path);
 
-/// Returns "file:line: key", the location of a node in messages.
+/// Returns "file:line: key", the location of a node in messages; the key without a file.
 std::string location_of(const std::filesystem::path& file, const YAML::Node& node, const std::string& key);
 
 /// Returns a message that begins with a key of a scenario, "leaks.0.at = x: ...", with the place of the key before it:

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "app/check/check_robot.h"
+#include "app/scenario/mounts.h"
 #include "core/error.h"
 #include "tests/support/temporary_file.h"
 
@@ -141,6 +142,8 @@ TEST(Mounts, AMountOfTheProfileBringsFramePresetAndTolerancesAndSwitchesTheSenso
   EXPECT_EQ(files.robot.T_body("lidar_rear").position, Eigen::Vector3d(-0.4, 0.0, 0.3));
   EXPECT_THAT(files.robot_urdf_text, HasSubstr("<joint name=\"lidar_rear_mount\""));
 }
+
+TEST(Mounts, TheLocationOfAKeyWithoutAFileIsTheKey) { EXPECT_EQ(location_of("", YAML::Node(), "robot"), "robot"); }
 
 TEST(Mounts, SettingsOfTheScenarioWinOverThePresetOfAMountAndItsMountsOverThoseOfTheRobot) {
   const CourierData data({}, "mounts: [{frame: lidar, z_m: 0.5, preset: tim571}, {frame: tdlas, x_m: 0.3}]\n");
