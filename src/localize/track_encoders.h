@@ -7,8 +7,8 @@
 
 namespace patrol::localize {
 
-/// Running counts of the encoders of tracks or wheels: those of the two sides, and for mecanum wheels those of the
-/// lateral motion.
+/// Running counts of the encoders of tracks or wheels: those of the two sides, for mecanum wheels those of the lateral
+/// motion, and for mecanum wheels and driven steered wheels those of their contradictions.
 struct DriveTicks : TrackTicks {
   /// Counts of the sides without lateral motion.
   DriveTicks(const TrackTicks& sides) : TrackTicks(sides) {}  // NOLINT(google-explicit-constructor)
@@ -24,7 +24,8 @@ struct DriveTicks : TrackTicks {
   }
 
   std::int64_t lateral = 0;   ///< of the motion to the left
-  std::int64_t residual = 0;  ///< of the motion that only slip explains (WheelMotion::residual_mps)
+  std::int64_t residual = 0;  ///< of the motion that only slip explains (WheelMotion::residual_mps,
+                              ///< SteeredWheels)
 };
 
 /// Speed of the two tracks relative to the robot's body, from the track encoders; forward is positive.
@@ -32,7 +33,7 @@ struct TrackSpeed {
   double left_mps = 0.0;
   double right_mps = 0.0;
   double lateral_mps = 0.0;   ///< lateral speed of the robot by mecanum wheels, positive to the left
-  double residual_mps = 0.0;  ///< speed of mecanum wheels that only slip explains
+  double residual_mps = 0.0;  ///< speed of mecanum or steered wheels that only slip explains
 
   double mean_mps() const { return 0.5 * (left_mps + right_mps); }
   double difference_mps() const { return right_mps - left_mps; }

@@ -194,8 +194,8 @@ Eigen::Vector3d TrackOdometry::speed_std(const EncoderInterval& interval, const 
   along << settings_.speed_std_mps, step_std, settings_.scrub_std * interval.smooth.difference_mps(),
       settings_.acceleration_std_s * interval.acceleration_mps2, settings_.disagreement_std_m * disagreement_radps;
   const double lateral_std = std::hypot(settings_.lateral_std_mps, settings_.lateral_std_m * then.omega_body.z());
-  if (!is_mecanum_) return {along.norm(), lateral_std, settings_.vertical_std_mps};
   const double residual_std = interval.smooth.residual_mps;
+  if (!is_mecanum_) return {std::hypot(along.norm(), residual_std), lateral_std, settings_.vertical_std_mps};
   const Eigen::Vector4d lateral(lateral_std, step_std,
                                 settings_.acceleration_std_s * interval.lateral_acceleration_mps2, residual_std);
   return {std::hypot(along.norm(), residual_std), lateral.norm(), settings_.vertical_std_mps};

@@ -13,6 +13,7 @@
 #include "localize/legged_odometry.h"
 #include "localize/localize_state.h"
 #include "localize/map_pose_tracker.h"
+#include "localize/steered_wheels.h"
 #include "localize/track_odometry.h"
 #include "localize/wheel_rows.h"
 
@@ -124,6 +125,30 @@ class WheeledOdometrySource final : public DifferentialOdometrySource {
   localize::WheelRows rows_;
 };
 
+/// The driven wheels are steered: they yield the motion of the axle that is not.
+class SteeredOdometrySource final : public DifferentialOdometrySource {
+ public:
+  SteeredOdometrySource(const RobotDescription& robot, const localize::TrackOdometrySettings& settings)
+      : DifferentialOdometrySource(robot, settings),
+        robot_(robot),
+        wheels_(robot, settings.ticks_per_sprocket_turn,
+                settings.skid_ratio > 0.0 ? settings.skid_ratio : skid_ratio(robot)) {}
+
+  void serialize_state(StateArchive& archive) override {
+    DifferentialOdometrySource::serialize_state(archive);
+    archive(wheels_);
+  }
+
+ private:
+  std::optional<localize::DriveTicks> ticks_of(const SensorMessage& message) override {
+    const JointState* joints = usable_joints(message, robot_);
+    return joints ? std::optional<localize::DriveTicks>(wheels_.add(*joints)) : std::nullopt;
+  }
+
+  RobotDescription robot_;
+  localize::SteeredWheels wheels_;
+};
+
 /// The angles of the four mecanum wheels yield a displacement in body (mecanum_motion): its forward part and its
 /// rotation are the counts of the two sides.
 class MecanumOdometrySource final : public DifferentialOdometrySource {
@@ -161,6 +186,8 @@ std::unique_ptr<OdometrySource> make_odometry_source(const StackSettings& settin
   }
   if (settings.odometry_source == "wheeled" && has_rollers(robot))
     return std::make_unique<MecanumOdometrySource>(robot, settings);
+  if (settings.odometry_source == "wheeled" && localize::is_driven_by_steered_wheels(robot))
+    return std::make_unique<SteeredOdometrySource>(robot, settings.odometry.wheeled);
   if (settings.odometry_source == "wheeled") return std::make_unique<WheeledOdometrySource>(robot, settings);
   if (robot.legs.empty()) {
     throw InputError(
