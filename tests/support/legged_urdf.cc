@@ -78,11 +78,11 @@ std::string UrdfQuadruped::text() const {
       const Eigen::Matrix3d back = R.transpose();
       out += fmt::format(
           "<joint name=\"{0}_motor\" type=\"revolute\"><parent link=\"{1}\"/><child link=\"{0}\"/>{2}<axis "
-          "xyz=\"{3}\"/><limit lower=\"{4:.9f}\" upper=\"{5:.9f}\" effort=\"{6}\" velocity=\"25\"/></joint>\n",
+          "xyz=\"{3}\"/><limit lower=\"{4:.9f}\" upper=\"{5:.9f}\" effort=\"{6}\" velocity=\"{7}\"/></joint>\n",
           link, parent,
           origin(R_plain_parent.transpose() * place[static_cast<std::size_t>(i)], R_plain_parent.transpose() * turned),
           words(frame.sign * (back * axis)), std::min(one, other), std::max(one, other),
-          part == kKnee ? knee_effort_nm : effort_nm);
+          part == kKnee ? knee_effort_nm : effort_nm, speed_radps);
       out += fmt::format("<link name=\"{}\">", link);
       out += inertial(mass[at], size[at], back * center[at], back) + box("visual", size[at], back * center[at], back);
       const double collision_ratio = part == kKnee ? shank_collision_ratio : 0.9;

@@ -27,6 +27,7 @@ struct UrdfQuadruped {
   double knee_offset_m = 0.0;  ///< lateral distance from the thigh's axis to that of the shank, outward
   double foot_radius_m = 0.022;
   double effort_nm = 40.0, knee_effort_nm = 60.0;
+  double speed_radps = 25.0;
   double knee_lower_rad = -2.7, knee_upper_rad = -0.3;                    ///< plain angle
   double shank_collision_ratio = 0.9;                                     ///< size of its collision box to its looks
   bool is_hip_first = false;                                              ///< the hip is above the abduction

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -56,7 +57,8 @@ void check_joint_speeds(importer::ImportedRobot& robot) {
   importer::write_robot(robot, folder.path());
   const RobotDescription description = io::load_robot_description((folder.path() / (robot.name + ".urdf")).string());
   if (description.legs.empty()) return;
-  const sim::LocomotionSettings walk = sim::scaled_locomotion(description);
+  sim::LocomotionSettings walk = sim::scaled_locomotion(description);
+  walk.swing_clearance_m = std::min(walk.swing_clearance_m, sim::min_swing_clearance_m(description));
   const double ratio = sim::peak_swing_speed_ratio(description, walk, walk.max_forward_mps);
   if (ratio <= 1.0) return;
   robot.assumptions.push_back(

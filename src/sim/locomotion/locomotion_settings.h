@@ -49,7 +49,7 @@ struct LocomotionSettings {
 /// Returns the settings for a robot with legs: lengths are proportional to the length of the legs, times and speeds to
 /// its square root; the trunk is 1 % above the standing posture. The moment arm is the height of the trunk, the arm of
 /// the horizontal forces of the feet. The swing is lower, the period longer and the robot slower if its joints are
-/// too slow (swing_speed.h).
+/// too slow; a small robot swings its feet higher, because of steps (swing_speed.h).
 LocomotionSettings scaled_locomotion(const RobotDescription& robot);
 
 }  // namespace patrol::sim

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "core/leg_kinematics.h"
+#include "sim/leg_scale.h"
 #include "sim/locomotion/gait.h"
 #include "sim/locomotion/swing_trajectory.h"
 
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double kMaxRatio = 0.82;  // the control of the swing adds a tenth
 constexpr double kMinClearanceRatio = 0.6, kMinForward_mps = 0.1;
+constexpr double kStepClearance_m = 0.08, kMaxClearanceOfLeg = 0.27;
+constexpr double kMaxRaisedRatio = 1.4;
 constexpr double kMaxPeriodRatio = 1.5, kKeptSpeedRatio = 0.35;
 constexpr int kSamples = 40;
 
@@ -60,6 +63,16 @@ double peak_swing_speed_ratio(const RobotDescription& robot, const LocomotionSet
   return peak;
 }
 
+double min_swing_clearance_m(const RobotDescription& robot) {
+  return kMinClearanceRatio * leg_scale(robot).length * LocomotionSettings{}.swing_clearance_m;
+}
+
+double step_clearance_m(const RobotDescription& robot) {
+  double leg_m = 0.0;
+  for (const LegGeometry& leg : robot.legs) leg_m = std::max(leg_m, leg.length_m());
+  return std::min(kStepClearance_m, kMaxClearanceOfLeg * leg_m);
+}
+
 void limit_to_joint_speeds(const RobotDescription& robot, LocomotionSettings& settings) {
   const auto are_fast_enough = [&](const LocomotionSettings& changed, double forward_mps) {
     return peak_swing_speed_ratio(robot, changed, forward_mps) <= kMaxRatio;
@@ -78,6 +91,15 @@ void limit_to_joint_speeds(const RobotDescription& robot, LocomotionSettings& se
                            });
   settings.max_forward_mps = largest(std::min(kMinForward_mps, nominal_mps), nominal_mps,
                                      [&](double mps) { return are_fast_enough(settings, mps); });
+  if (!are_fast_enough(settings, settings.max_forward_mps)) return;
+  const double low_m = settings.swing_clearance_m, step_m = std::max(low_m, step_clearance_m(robot));
+  settings.swing_clearance_m = largest(low_m, step_m, [&](double clearance_m) {
+    LocomotionSettings raised = settings;
+    raised.swing_clearance_m = clearance_m;
+    return peak_swing_speed_ratio(robot, raised, settings.max_forward_mps) <= kMaxRaisedRatio;
+  });
+  settings.max_forward_mps = std::max(std::min(kMinForward_mps, settings.max_forward_mps),
+                                      low_m / settings.swing_clearance_m * settings.max_forward_mps);
 }
 
 }  // namespace patrol::sim

@@ -14,9 +14,9 @@
 namespace patrol::sim::swing_speed_test {
 namespace {
 
-/// Quadruped with thighs and shanks of 0.2 m below its hips, whose joints have the same speed limit.
-RobotDescription even_legged_robot(double limit_radps) {
-  const test::TemporaryFile urdf("robot.urdf", test::UrdfQuadruped{.thigh_m = 0.2, .shank_m = 0.2}.text());
+/// Quadruped with thighs and shanks of the same length below its hips, whose joints have the same speed limit.
+RobotDescription even_legged_robot(double limit_radps, double link_m = 0.2) {
+  const test::TemporaryFile urdf("robot.urdf", test::UrdfQuadruped{.thigh_m = link_m, .shank_m = link_m}.text());
   RobotDescription robot = io::load_robot_description(urdf.path());
   for (JointLimit& limit : robot.joint_limits) limit.velocity_radps = limit_radps;
   return robot;
@@ -52,9 +52,11 @@ TEST(SwingSpeed, GrowsWithTheSpeedOfTheRobotAndWithTheClearance) {
 }
 
 TEST(SwingSpeed, SlowJointsLowerTheSwingThenLengthenThePeriodThenSlowTheRobot) {
-  const LocomotionSettings fast = scaled_locomotion(even_legged_robot(1000.0));
+  constexpr double kLink_m = 0.4;  // the lowest swing is higher than steps require
+  const RobotDescription fast_robot = even_legged_robot(1000.0, kLink_m);
+  const LocomotionSettings fast = scaled_locomotion(fast_robot);
   const RobotDescription slow_robot = even_legged_robot(
-      1000.0 * peak_swing_speed_ratio(even_legged_robot(1000.0), fast, fast.max_forward_mps));  // a ratio of 1
+      1000.0 * peak_swing_speed_ratio(fast_robot, fast, fast.max_forward_mps), kLink_m);  // a ratio of 1
   const LocomotionSettings slow = scaled_locomotion(slow_robot);
   EXPECT_LT(slow.swing_clearance_m, 0.95 * fast.swing_clearance_m);
   EXPECT_EQ(slow.max_forward_mps, fast.max_forward_mps);
@@ -80,6 +82,27 @@ TEST(SwingSpeed, SlowJointsLowerTheSwingThenLengthenThePeriodThenSlowTheRobot) {
   const LocomotionSettings least = slowed_to(0.4);
   EXPECT_NEAR(least.gait_period_s, 1.5 * fast.gait_period_s, 1e-9);
   EXPECT_LT(least.max_forward_mps, 0.35 * fast.max_forward_mps);
+}
+
+TEST(SwingSpeed, TheClearanceIs8CentimetersOr27PercentOfTheLegUnlessTheJointsAreMuchTooSlow) {
+  EXPECT_NEAR(scaled_locomotion(even_legged_robot(1000.0, 0.15)).swing_clearance_m, 0.08, 1e-9);
+  EXPECT_NEAR(scaled_locomotion(even_legged_robot(1000.0, 0.1)).swing_clearance_m, 0.054, 1e-9);
+  const RobotDescription robot = even_legged_robot(20.0, 0.15), slower_robot = even_legged_robot(15.0, 0.15);
+  const LocomotionSettings settings = scaled_locomotion(robot), slower = scaled_locomotion(slower_robot);
+  EXPECT_NEAR(settings.swing_clearance_m, 0.08, 1e-6);
+  const double full_mps = std::sqrt(0.3 / 0.426);  // that of the tuned robot at an equal Froude number
+  EXPECT_NEAR(scaled_locomotion(even_legged_robot(1000.0, 0.15)).max_forward_mps, 0.09 * 0.3 / 0.426 / 0.08 * full_mps,
+              1e-3);
+  EXPECT_LT(settings.max_forward_mps, 0.79 * full_mps);
+  EXPECT_GT(settings.max_forward_mps, 0.45 * full_mps);
+  EXPECT_LT(peak_swing_speed_ratio(robot, settings, settings.max_forward_mps), 1.4);
+  EXPECT_LT(slower.swing_clearance_m, 0.079);
+  EXPECT_GT(slower.swing_clearance_m, min_swing_clearance_m(slower_robot));
+  const double peak = peak_swing_speed_ratio(slower_robot, slower, slower.max_forward_mps);
+  EXPECT_GT(peak, 1.25) << "1.4 at the speed before it was lowered";
+  EXPECT_LT(peak, 1.4);
+  const RobotDescription slowest_robot = even_legged_robot(3.0, 0.15);
+  EXPECT_NEAR(scaled_locomotion(slowest_robot).swing_clearance_m, min_swing_clearance_m(slowest_robot), 1e-12);
 }
 
 TEST(SwingSpeed, TheJointsOfTheFirstQuadrupedAreFastEnough) {
