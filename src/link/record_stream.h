@@ -50,8 +50,9 @@ class RecordStream {
   io::McapMessage read();
 
   int peer_process() const { return socket_.peer_process(); }
+
   /// Binds the thread to the core of the other side while it waits for bytes (shared_core.h). Has no effect on TCP.
-  void share_core() { core_ = std::make_unique<SharedCore>(peer_process()); }
+  void wait_on_peer_core() { core_ = std::make_unique<SharedCore>(peer_process()); }
 
  private:
   /// Reads what the other side sent before it closed the connection. Throws its failure if it sent one.

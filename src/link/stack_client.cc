@@ -51,8 +51,8 @@ void StackClient::begin(const std::string& stack, const std::vector<std::string>
   stream_.flush();
 }
 
-void StackClient::share_core() {
-  stream_.share_core();
+void StackClient::wait_on_simulator_core() {
+  stream_.wait_on_peer_core();
   // A simulator that is interrupted by its stack could be moved to another core.
   const sched_param no_priority{};
   if (::sched_getscheduler(0) == SCHED_OTHER) ::sched_setscheduler(0, SCHED_BATCH, &no_priority);

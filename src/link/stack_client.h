@@ -44,7 +44,7 @@ class StackClient {
   /// (sched(7)): it begins after the simulator has begun to wait. Turns and the simulator after them then begin sooner.
   /// Between two waits the thread computes on any core. Has no effect on TCP. Not for `stack.compute.model=fixed`,
   /// where the simulator continues beside the turn.
-  void share_core();
+  void wait_on_simulator_core();
 
   /// Waits for the turn after the last `done`. Ask for no turn after the last one.
   ReceivedTurn next_turn();

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/geometry/linear_algebra.h"
 #include "core/wheel_kinematics.h"
 
 namespace patrol::localize {
@@ -72,7 +72,8 @@ void SteeredWheels::move(const std::vector<double>& angle_rad) {
     rolled_m[2 * i] =
         wheel.radius_m * wheel.forward_sign * (angle_rad[wheel.drive_joint] - last_rad_[wheel.drive_joint]);
   }
-  const Eigen::Vector2d motion = rows.colPivHouseholderQr().solve(rolled_m);
+  const Eigen::Vector2d motion =
+      solve_symmetric(Eigen::Matrix2d(rows.transpose() * rows), Eigen::Vector2d(rows.transpose() * rolled_m));
   const Eigen::VectorXd rest_m = rolled_m - rows * motion;
   left_m_ += motion[0] - half_gauge_m_ * motion[1];
   right_m_ += motion[0] + half_gauge_m_ * motion[1];

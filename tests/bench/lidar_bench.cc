@@ -1,7 +1,7 @@
 // The lidar's rays in the street against MuJoCo's and against bare Embree.
 //   tests/bench/lidar_bench
-// AgainstMjMultiRay: `speed_up` is to be at least 10. AgainstBareEmbree, in cones as the lidar casts them: `ratio` is to be
-// at most 1.2.
+// AgainstMjMultiRay: `speed_up` is to be at least 10. AgainstBareEmbree, in cones as the lidar casts them: `ratio` is
+// to be at most 1.2.
 
 #include "sim/sensors/lidar.h"
 

@@ -59,7 +59,7 @@ TEST_F(SharedCoreTest, StackWaitsOnTheCoreOfTheSimulatorAndComputesOnAnyCore) {
   std::vector<Cores> in_turns;
   std::thread stack([&, end = Socket(ends[1])]() mutable {
     StackClient client(std::move(end));
-    client.share_core();
+    client.wait_on_simulator_core();
     client.begin("test", {}, 10ms);
     EXPECT_EQ(::sched_getscheduler(0), SCHED_BATCH);
     stack_thread = ::gettid();

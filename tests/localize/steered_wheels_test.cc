@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/geometry/angles.h"
 
 namespace patrol::localize::steered_wheels_test {
 namespace {
@@ -112,7 +113,7 @@ TEST(SteeredWheels, ASlalomEndsAtItsDistanceTo1PerMilleAndItsHeadingTo1Degree) {
   }
   EXPECT_GT(heading_rad, 1.0);
   EXPECT_NEAR(0.5 * (drive.left_m() + drive.right_m()), distance_m, 1e-3 * distance_m);
-  EXPECT_NEAR((drive.right_m() - drive.left_m()) / kGauge_m, heading_rad, std::numbers::pi / 180.0);
+  EXPECT_NEAR((drive.right_m() - drive.left_m()) / kGauge_m, heading_rad, to_rad(1.0));
 }
 
 // Of the rows of a straight motion, v + a w, v - a w and twice L w, with a = half of the gauge, that of the left wheel

@@ -38,7 +38,7 @@ std::unique_ptr<StackPort> stack_for(link::StackClient& client) {
   Scenario scenario = load_scenario(file);
   scenario.stack.command.clear();  // the built-in stack needs its sensors in this process as well
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
-  if (scenario.stack.compute.model != "fixed") client.share_core();  // the simulator waits for each turn
+  if (scenario.stack.compute.model != "fixed") client.wait_on_simulator_core();  // the simulator waits for each turn
   return std::make_unique<BuiltInStack>(make_stack(scenario, files), stack::ComputeSettings{}, false);
 }
 

@@ -132,7 +132,7 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
     const bool is_last = next_beam_ % settings_.beams == settings_.beams - 1;
     if (!shots) {
       shots = &shots_.emplace_back(Shots{.bodies = scene_.poses(), .beams = {}});
-      if (settings_.motion_distortion) shots->beams.reserve(most_beams_);
+      if (settings_.motion_distortion) shots->beams.reserve(max_beams_);
     }
     if (settings_.motion_distortion) {
       shots->beams.push_back({next_beam_, instant, T_world_lidar});
@@ -141,7 +141,7 @@ void Lidar::advance(Time from, Time to, const Pose3& T_world_body_from, const Po
         shots->beams.push_back({beam, instant_of(beam), T_world_lidar});
     }
     ++next_beam_;
-    most_beams_ = std::max(most_beams_, shots->beams.size());
+    max_beams_ = std::max(max_beams_, shots->beams.size());
     if (!is_last) continue;
     finish_revolution();
     begin_revolution();

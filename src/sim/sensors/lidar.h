@@ -122,8 +122,8 @@ class Lidar {
   std::vector<double> instants_;                            ///< [beam], fraction of the revolution
   std::vector<Eigen::Vector2d> elevation_;                  ///< [ring], cosine and sine of the elevation
   std::shared_ptr<Revolution> revolution_ = std::make_shared<Revolution>();
-  std::vector<Shots> shots_;    ///< not yet submitted, [tick]
-  std::size_t most_beams_ = 0;  ///< maximum number of beams in a tick, for memory only
+  std::vector<Shots> shots_;   ///< not yet submitted, [tick]
+  std::size_t max_beams_ = 0;  ///< maximum number of beams in a tick, for memory only
   BackgroundWorker* worker_;
   BackgroundWorker::Ticket submitted_ = 0;
   std::vector<FiredRevolution> fired_;
