@@ -1,9 +1,11 @@
-// Odometry of a mecanum robot on MuJoCo's contacts, with as-built wheels and sensors.
+// Odometry of robots with mecanum wheels and with front-wheel drive on MuJoCo's contacts, with as-built wheels and
+// sensors.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include <Eigen/LU>
 #include <fmt/format.h>
@@ -18,28 +20,49 @@
 #include "tests/support/temporary_file.h"
 #include "tests/support/wheeled_urdf.h"
 
-namespace patrol::mecanum_odometry_test {
+namespace patrol::wheel_odometry_test {
 namespace {
 
 constexpr double kStand_s = 4.0;
 constexpr std::array kTimes_s = {30.0, 60.0, 120.0};
 
-/// Parts of 5 s each: ahead, to both sides, along a diagonal, turns, curves with lateral motion, and halts.
-VelocityCommand tour(double time_s) {
-  struct Part {
-    double vx_mps, vy_mps, yaw_rate_radps;
-  };
-  constexpr std::array<Part, 8> kParts = {{{0.5, 0.0, 0.0},
-                                           {0.0, 0.35, 0.0},
-                                           {0.0, 0.0, 0.5},
-                                           {0.3, -0.3, 0.0},
-                                           {0.0, 0.0, 0.0},
-                                           {0.4, 0.0, -0.3},
-                                           {0.0, -0.35, 0.0},
-                                           {0.2, 0.2, 0.2}}};
+/// Body velocity during 5 s.
+struct Part {
+  double vx_mps, vy_mps, yaw_rate_radps;
+};
+using Tour = std::array<Part, 8>;
+
+/// Ahead, to both sides, along a diagonal, turns, curves with lateral motion, and halts.
+constexpr Tour kMecanumTour = {{{0.5, 0.0, 0.0},
+                                {0.0, 0.35, 0.0},
+                                {0.0, 0.0, 0.5},
+                                {0.3, -0.3, 0.0},
+                                {0.0, 0.0, 0.0},
+                                {0.4, 0.0, -0.3},
+                                {0.0, -0.35, 0.0},
+                                {0.2, 0.2, 0.2}}};
+/// Ahead, curves to both sides, halts, and reverse with and without a curve.
+constexpr Tour kFrontDriveTour = {{{0.6, 0.0, 0.0},
+                                   {0.5, 0.0, 0.25},
+                                   {0.0, 0.0, 0.0},
+                                   {-0.4, 0.0, 0.0},
+                                   {0.7, 0.0, -0.3},
+                                   {0.5, 0.0, 0.0},
+                                   {-0.3, 0.0, 0.15},
+                                   {0.4, 0.0, 0.2}}};
+
+VelocityCommand command_at(const Tour& tour, double time_s) {
   if (time_s < kStand_s) return {};
-  const Part& part = kParts[static_cast<std::size_t>((time_s - kStand_s) / 5.0) % kParts.size()];
+  const Part& part = tour[static_cast<std::size_t>((time_s - kStand_s) / 5.0) % tour.size()];
   return {.stamp = {}, .vx_mps = part.vx_mps, .vy_mps = part.vy_mps, .yaw_rate_radps = part.yaw_rate_radps};
+}
+
+/// Wheelbase of 0.7 m; the motors drive the steered front wheels.
+test::UrdfRobot front_drive_urdf() {
+  test::UrdfRobot robot = test::ackermann_urdf(0.7, 0.6, 0.5);
+  for (test::UrdfWheel& wheel : robot.wheels) wheel.is_driven = wheel.steering_limit_rad > 0.0;
+  robot.center_of_mass_x_m = 0.35;
+  return robot;
 }
 
 /// Error of the odometry and the distance driven at `kTimes_s`.
@@ -49,15 +72,16 @@ struct Result {
   double distance_m = 0.0;
 };
 
-Result drive(std::uint64_t seed) {
+/// `drive_type`: of the scenario; empty: by the wheels.
+Result drive(const test::UrdfRobot& urdf_robot, const std::string& drive_type, const Tour& tour, std::uint64_t seed) {
   const test::TemporaryFile world("world.xml", sim::make_flat_world());
-  const test::TemporaryFile urdf("robot.urdf", test::skid_steer_urdf(0.5, 0.6).text());
+  const test::TemporaryFile urdf("robot.urdf", urdf_robot.text());
   sim::SimulatorSettings settings;
   settings.world_xml = world.path();
   settings.robot_urdf = urdf.path();
   settings.as_built = sim::AsBuiltSettings::as_delivered();
   settings.as_built.imu.scale_std = 0.0;  // not in the covariance (tests/localize/track_odometry_test.cc)
-  settings.wheel_drive.type = "mecanum";
+  if (!drive_type.empty()) settings.wheel_drive.type = drive_type;
   settings.sensors.lidar.enabled = settings.sensors.tdlas.enabled = settings.sensors.gnss.enabled = false;
   settings.sensors.hall.enabled = settings.sensors.foot_contact.enabled = false;
   settings.sensors.joint_encoders.rate_hz = 50.0;
@@ -75,7 +99,7 @@ Result drive(std::uint64_t seed) {
   bool has_started = false;
   while (next < kTimes_s.size()) {
     const double time_s = to_seconds(simulator.now());
-    simulator.set_command(tour(time_s));
+    simulator.set_command(command_at(tour, time_s));
     simulator.step();
     for (const SensorMessage& message : simulator.take_messages()) odometry->add(message);
     const Pose2 truth = to_pose2(simulator.truth().T_world_body);
@@ -88,9 +112,8 @@ Result drive(std::uint64_t seed) {
     result.distance_m += has_started ? (truth.position() - last.position()).norm() : 0.0;
     last = truth;
     if (time_s < kTimes_s[next]) continue;
-    const Pose2 error = (T_world_odom.inverse() * truth);
-    const Pose2 by_odometry = to_pose2(estimate.value().T_odom_body);
-    result.error[next] = {by_odometry.x - error.x, by_odometry.y - error.y, wrap_angle(by_odometry.yaw - error.yaw)};
+    const Pose2 expected = T_world_odom.inverse() * truth, actual = to_pose2(estimate.value().T_odom_body);
+    result.error[next] = {actual.x - expected.x, actual.y - expected.y, wrap_angle(actual.yaw - expected.yaw)};
     result.nees[next] = result.error[next].dot(estimate->planar_covariance.inverse() * result.error[next]);
     ++next;
   }
@@ -99,26 +122,36 @@ Result drive(std::uint64_t seed) {
 
 // The mean of 20 values of chi-square with three degrees of freedom is in [2.02, 4.17] with 95 %. The filter may be
 // underconfident: its settings allow for slip that a level floor does not have.
-TEST(MecanumOdometry, TheNeesOverTwentyAsBuiltRobotsIsBelowIts95PercentBoundAndTheDriftBelow2PercentOfTheDistance) {
+void expect_consistent(const test::UrdfRobot& urdf_robot, const std::string& drive_type, const Tour& tour,
+                       double min_distance_m) {
   constexpr int kNumSeeds = 20;
   std::array<double, kTimes_s.size()> mean_nees{};
   double max_drift = 0.0, mean_drift = 0.0;
   for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
-    const Result result = drive(seed);
+    const Result result = drive(urdf_robot, drive_type, tour, seed);
     for (std::size_t i = 0; i < kTimes_s.size(); ++i) mean_nees[i] += result.nees[i] / kNumSeeds;
     const double drift = result.error.back().head<2>().norm() / result.distance_m;
     max_drift = std::max(max_drift, drift);
     mean_drift += drift / kNumSeeds;
-    EXPECT_GT(result.distance_m, 25.0);
+    EXPECT_GT(result.distance_m, min_distance_m);
   }
   for (std::size_t i = 0; i < kTimes_s.size(); ++i) {
     EXPECT_GT(mean_nees[i], 0.3) << kTimes_s[i] << " s";
     EXPECT_LT(mean_nees[i], 4.17) << kTimes_s[i] << " s";
   }
   EXPECT_LT(mean_drift, 0.02);
-  RecordProperty("mean_nees", fmt::format("{:.2f} {:.2f} {:.2f}", mean_nees[0], mean_nees[1], mean_nees[2]));
-  RecordProperty("drift", fmt::format("mean {:.4f} max {:.4f}", mean_drift, max_drift));
+  testing::Test::RecordProperty("mean_nees",
+                                fmt::format("{:.2f} {:.2f} {:.2f}", mean_nees[0], mean_nees[1], mean_nees[2]));
+  testing::Test::RecordProperty("drift", fmt::format("mean {:.4f} max {:.4f}", mean_drift, max_drift));
+}
+
+TEST(MecanumOdometry, TheNeesOverTwentyAsBuiltRobotsIsBelowIts95PercentBoundAndTheDriftBelow2PercentOfTheDistance) {
+  expect_consistent(test::skid_steer_urdf(0.5, 0.6), "mecanum", kMecanumTour, 25.0);
+}
+
+TEST(SteeredOdometry, TheNeesOverTwentyAsBuiltRobotsIsBelowIts95PercentBoundAndTheDriftBelow2PercentOfTheDistance) {
+  expect_consistent(front_drive_urdf(), "", kFrontDriveTour, 40.0);
 }
 
 }  // namespace
-}  // namespace patrol::mecanum_odometry_test
+}  // namespace patrol::wheel_odometry_test
