@@ -8,8 +8,9 @@
 
 #include "core/geometry/angles.h"
 #include "importer/normalizer.h"
-#include "importer/sensor_origin.h"
+#include "importer/scan_plane.h"
 #include "importer/surface_distance.h"
+#include "sim/as_built/as_built_settings.h"
 
 namespace patrol::importer {
 namespace {
@@ -49,7 +50,8 @@ void Normalizer::clear_origin(const std::string& frame, const std::string& link)
     }
   }
   const Pose3 T_base_old = sensor.joint->T_parent_link;
-  const auto inside = surface.clearance(T_base_old.position, std::numbers::sqrt3 * kMountTolerance_m);
+  const double tolerance_m = sim::MountingTolerances{}.position_m;
+  const auto inside = surface.clearance(T_base_old.position, std::numbers::sqrt3 * tolerance_m);
   if (!inside) return;
   const std::string key = fmt::format("mounts in {}.yaml", result_.name);
   constexpr double kAside = 3.0;  // weight of a distance to a side
@@ -71,7 +73,7 @@ void Normalizer::clear_origin(const std::string& frame, const std::string& link)
       inside->distance_m <= -5e-4
           ? fmt::format("{:.3f} m inside a visual of {}", -inside->distance_m, inside->link)
           : fmt::format("only {:.3f} m from a visual of {}, and its mount has a tolerance of {:.3f} m",
-                        std::max(0.0, inside->distance_m), inside->link, kMountTolerance_m);
+                        std::max(0.0, inside->distance_m), inside->link, tolerance_m);
   if (side.empty()) {
     assume(frame, fmt::format("its origin is {}: its beams end there", where), key);
     return;
@@ -92,12 +94,12 @@ void Normalizer::check_scan_plane(const std::string& frame) {
   if (frame != "lidar" && frame != "lidar_rear") return;
   const Pose3& T_base_lidar = result_.links.back().joint->T_parent_link;
   const double up = std::abs((T_base_lidar.rotation * Eigen::Vector3d::UnitZ()).z());
-  const double tilt_rad = std::acos(std::min(up, 1.0));
-  if (tilt_rad <= kMaxScanTilt_rad) return;
-  assume(frame,
-         fmt::format("its scan plane is tilted by {:.0f} degrees: mapping and navigation need a horizontal one",
-                     to_deg(tilt_rad)),
-         fmt::format("<origin rpy> of the sensor, or mounts in {}.yaml", result_.name));
+  const double tilt_deg = to_deg(std::acos(std::min(up, 1.0)));
+  if (tilt_deg <= kMaxScanTilt_deg) return;
+  assume(
+      frame,
+      fmt::format("its scan plane is tilted by {:.0f} degrees: mapping and navigation need a horizontal one", tilt_deg),
+      fmt::format("<origin rpy> of the sensor, or mounts in {}.yaml", result_.name));
 }
 
 }  // namespace patrol::importer

@@ -116,8 +116,8 @@ TEST(SteeredWheels, ASlalomEndsAtItsDistanceTo1PerMilleAndItsHeadingTo1Degree) {
   EXPECT_NEAR((drive.right_m() - drive.left_m()) / kGauge_m, heading_rad, to_rad(1.0));
 }
 
-// Of the rows of a straight motion, v + a w, v - a w and twice L w, with a = half of the gauge, that of the left wheel
-// is off by e: w = -a e / (2 (a^2 + L^2)), and v is off by e / 2.
+// The rows of a straight motion are v + a w, v - a w and, for each wheel, L w, where 2 a is the gauge. The row of the
+// left wheel has the error e: w = -a e / (2 (a^2 + L^2)), and v has the error e / 2.
 TEST(SteeredWheels, OneWheelThatIsLargerBy2PercentShortensTheWayBy1PercentAndIsAResidual) {
   RollingDrive drive(1.02);
   for (int step = 0; step < 500; ++step) drive.move(0.02, 0.0);

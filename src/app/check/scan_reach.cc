@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
+#include "importer/scan_plane.h"
 
 namespace patrol::app {
 namespace {
@@ -37,13 +38,12 @@ std::vector<std::string> scan_reach_warnings(const CheckRobot& robot) {
 }
 
 std::vector<std::string> scan_plane_warnings(const CheckRobot& robot) {
-  constexpr double kMaxTilt_deg = 10.0;
   std::vector<std::string> warnings;
   for (const CheckLidar& lidar : robot.lidars) {
     if (lidar.settings.rings > 1) continue;
     const double up = std::abs((robot.description.T_body(lidar.frame).rotation * Eigen::Vector3d::UnitZ()).z());
     const double tilt_deg = to_deg(std::acos(std::min(up, 1.0)));
-    if (tilt_deg <= kMaxTilt_deg) continue;
+    if (tilt_deg <= importer::kMaxScanTilt_deg) continue;
     warnings.push_back(
         fmt::format("the scan plane of {} is tilted by {:.0f} degrees: mapping and navigation need a horizontal one",
                     lidar.frame, tilt_deg));

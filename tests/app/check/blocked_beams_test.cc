@@ -8,9 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "importer/sensor_origin.h"
 #include "io/files/atomic_file.h"
-#include "sim/as_built/as_built_settings.h"
 #include "tests/support/temporary_file.h"
 #include "tests/support/wheeled_urdf.h"
 
@@ -67,10 +65,6 @@ TEST(BlockedBeams, ALidarOnTopOfAMastIsReportedBecauseOfTheToleranceOfItsMount) 
                           "as_built.mounting, 0 % with the nominal mount: mast: raise the frame by mounts"));
   EXPECT_THAT(warnings_of(on_mast(0.001, {"as_built.enabled=false"})), IsEmpty());
   EXPECT_THAT(warnings_of(on_mast(0.02, {})), IsEmpty());
-}
-
-TEST(BlockedBeams, TheToleranceOfTheImporterIsTheDefaultOfTheSimulator) {
-  EXPECT_EQ(importer::kMountTolerance_m, sim::MountingTolerances{}.position_m);
 }
 
 TEST(BlockedBeams, TheLidarsOfTheRobotsOfPatrolAreClearOfThemWithEveryMount) {
