@@ -9,6 +9,7 @@
 
 #include "core/geometry/angles.h"
 #include "core/geometry/linear_algebra.h"
+#include "core/gravity.h"
 #include "importer/normalizer.h"
 
 namespace patrol::importer {
@@ -141,7 +142,7 @@ Motor Normalizer::motor_of_leg(const SourceJoint& joint, double mass_kg, double 
   constexpr double kTorqueRatio = 0.42, kSpeed_radps = 20.0;
   Motor motor{.effort_nm = joint.effort.value_or(0.0), .velocity_radps = joint.velocity.value_or(0.0)};
   if (motor.effort_nm <= 0.0) {
-    motor.effort_nm = kTorqueRatio * mass_kg * kGravity * leg_m;
+    motor.effort_nm = kTorqueRatio * mass_kg * kGravity_mps2 * leg_m;
     assume(joint.name,
            fmt::format("torque limit {:.3g} N m: {} of weight times length of the leg", motor.effort_nm, kTorqueRatio),
            "<limit effort> of the joint");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
+#include "core/gravity.h"
 #include "importer/normalizer.h"
 
 namespace patrol::importer {
@@ -17,7 +18,7 @@ constexpr double kTorqueReserve = 1.5;  // loads differ, and wheels that skid si
 
 /// Returns the torque of the friction of a tire, N m, if the driven wheels carry the robot.
 double traction_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg) {
-  return kFriction * mass_kg * kGravity * wheel.radius_m / static_cast<double>(num_driven);
+  return kFriction * mass_kg * kGravity_mps2 * wheel.radius_m / static_cast<double>(num_driven);
 }
 
 /// Returns the speed limit of a drive whose file has none: that of small robots falls with the square root of their
@@ -140,8 +141,8 @@ void Normalizer::add_wheels() {
       target.joint->range = range;
       Motor motor{joint.effort.value_or(0.0), joint.velocity.value_or(0.0)};
       if (motor.effort_nm <= 0.0) {
-        motor.effort_nm =
-            std::max(2.0, kFriction * mass_kg * kGravity / static_cast<double>(found_.wheels.size()) * wheel.width_m);
+        motor.effort_nm = std::max(2.0, kFriction * mass_kg * kGravity_mps2 /
+                                            static_cast<double>(found_.wheels.size()) * wheel.width_m);
         assume(joint.name,
                fmt::format("torque limit {:.3g} N m: friction {} on the width of the tire", motor.effort_nm, kFriction),
                "<limit effort> of the joint");

@@ -16,6 +16,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "core/gravity.h"
 #include "importer/leg_finder.h"
 #include "importer/normalize.h"
 #include "importer/wheel_finder.h"
@@ -35,7 +36,6 @@ inline double axle_angle_rad(const Eigen::Vector3d& axis) {
   return angle;
 }
 
-inline constexpr double kGravity = 9.81;
 inline constexpr double kFriction = 0.8;          // rubber on asphalt
 inline constexpr double kDensity_kgpm3 = 500.0;   // of a link without mass
 inline constexpr double kMinSteering_rad = 0.05;  // to each side

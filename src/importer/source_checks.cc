@@ -6,6 +6,7 @@
 
 #include "importer/source_reader.h"
 #include "io/files/one_line.h"
+#include "io/yaml/settings_yaml.h"
 
 namespace patrol::importer {
 namespace {
@@ -87,6 +88,32 @@ void SourceReader::check_missing_visuals() {
                                   .text = fmt::format("is drawn without {}: mesh file not found", missing.uri),
                                   .override_with = "the file, or --package NAME=FOLDER"});
   }
+}
+
+/// Reports elements that are left out and whose names resemble that of an element which is read.
+void SourceReader::report_misspelled_elements(const tinyxml2::XMLElement& root) {
+  static const std::map<std::string, std::vector<std::string>> kElements = {
+      {"robot", {"link", "joint", "material", "gazebo", "transmission"}},
+      {"link", {"inertial", "visual", "collision"}},
+      {"inertial", {"origin", "mass", "inertia"}},
+      {"visual", {"origin", "geometry", "material"}},
+      {"collision", {"origin", "geometry"}},
+      {"joint", {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"}}};
+  const auto check = [this](const tinyxml2::XMLElement& parent) {
+    const auto known = kElements.find(parent.Name());
+    if (known == kElements.end()) return;
+    for (const tinyxml2::XMLElement* child = parent.FirstChildElement(); child; child = child->NextSiblingElement()) {
+      const std::string name = child->Name();
+      if (std::ranges::find(known->second, name) != known->second.end()) continue;
+      const std::string meant = io::closest_match(name, known->second);
+      if (meant.empty()) continue;
+      robot_.assumptions.push_back({.subject = fmt::format("<{}> in line {}", name, child->GetLineNum()),
+                                    .text = fmt::format("is left out: unknown element of <{}>", parent.Name()),
+                                    .override_with = fmt::format("<{}>, if it is meant", meant)});
+    }
+  };
+  check(root);
+  for_each_below(root, check);
 }
 
 /// Reports meshes that are not where the description names them.

@@ -355,6 +355,7 @@ SourceRobot SourceReader::read() {
   check_tree();
   check_mimics();
   check_missing_visuals();
+  report_misspelled_elements(*root);
   report_meshes_elsewhere();
   check_inertias();
   read_motors(*root);

@@ -80,6 +80,7 @@ class SourceReader {
   void check_inertias();
   void check_missing_visuals();
   bool has_rigid_collision(const std::string& link) const;
+  void report_misspelled_elements(const tinyxml2::XMLElement& root);
   void report_meshes_elsewhere();
   void scale_millimeters();
   void check_shape(const Shape& shape, const SourceLink& link) const;

@@ -8,6 +8,7 @@
 
 #include "core/frames.h"
 #include "core/geometry/convex_polygon.h"
+#include "core/gravity.h"
 #include "core/leg_kinematics.h"
 #include "io/urdf_reader.h"
 
@@ -16,7 +17,6 @@ namespace {
 
 constexpr std::size_t kNumLegs = 4;
 constexpr std::size_t kJointsPerLeg = 3;
-constexpr double kStandingGravity_mps2 = 9.81;
 
 bool is_movable(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
 
@@ -197,7 +197,7 @@ void UrdfReader::choose_standing(const std::array<JointLimit, 3>& limits, double
     if (!has_posture) continue;
     const LegChainState standing = chain_state(*leg.chain, angles);
     const double lever_m = std::abs(standing.position[knee].x() - standing.foot.x());
-    if (0.5 * mass_kg * kStandingGravity_mps2 * lever_m <= kMaxTorqueFraction * limits[knee].effort_nm) break;
+    if (0.5 * mass_kg * kGravity_mps2 * lever_m <= kMaxTorqueFraction * limits[knee].effort_nm) break;
   }
   if (!has_posture) fail(leg.foot_link, "the limits of the joints allow no posture with the foot below the hip");
   leg.standing_rad = rounded(angles);

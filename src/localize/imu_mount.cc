@@ -1,10 +1,12 @@
 #include "localize/imu_mount.h"
 
+#include "core/gravity.h"
+
 namespace patrol::localize {
 namespace {
 
 constexpr double kMaxRate_radps = 35.0;  // above the measuring range of a MEMS gyro, 2000 deg/s
-constexpr double kMaxForce_mps2 = 16.0 * 9.81 * 1.8;
+constexpr double kMaxForce_mps2 = 16.0 * kGravity_mps2 * 1.8;
 constexpr Time kMaxStep = std::chrono::milliseconds(50);  // no angular acceleration is computed over a longer gap
 
 }  // namespace

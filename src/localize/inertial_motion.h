@@ -4,11 +4,10 @@
 #include <Eigen/Geometry>
 
 #include "core/frames.h"
+#include "core/gravity.h"
 
 /// Strapdown inertial navigation over short steps and its error propagation, common to the filters of both robots.
 namespace patrol::localize {
-
-inline constexpr double kGravity_mps2 = 9.81;
 
 /// Angular rate and specific force at the trunk origin, in body, as measured (including bias).
 struct InertialSample {

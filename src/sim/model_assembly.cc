@@ -1,7 +1,6 @@
 #include "sim/model_assembly.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -13,6 +12,13 @@
 
 #include "core/error.h"
 #include "sim/antenna_mount.h"
+
+// Digits of the numbers that MuJoCo writes to MJCF. Its library exports these functions, its headers do not declare
+// them.
+extern "C" {
+int _mjPRIVATE__get_xml_precision();                // NOLINT(bugprone-reserved-identifier)
+void _mjPRIVATE__set_xml_precision(int precision);  // NOLINT(bugprone-reserved-identifier)
+}
 
 namespace patrol::sim {
 namespace {
@@ -147,26 +153,18 @@ void complete_inertial_frames(mjSpec& spec) {
   }
 }
 
-/// Increases the two smaller moments of inertia of a body whose sum is that of the largest one. The file has six
-/// digits, and the rounded moments would violate A + B >= C.
-void keep_inertias_valid(mjSpec& spec, const mjModel& model) {
-  constexpr double kMargin = 2e-5;  // three moments with errors of 5e-6
-  for (int body = 1; body < model.nbody; ++body) {
-    std::array<double, 3> moments{};
-    std::copy_n(model.body_inertia + 3 * body, 3, moments.begin());
-    std::array<std::size_t, 3> order = {0, 1, 2};
-    std::ranges::sort(order, {}, [&moments](std::size_t i) { return moments[i]; });
-    const double missing = moments[order[2]] * (1.0 + kMargin) - moments[order[0]] - moments[order[1]];
-    mjsBody* source = mjs_findBody(&spec, std::string(name_of(model, mjOBJ_BODY, body)).c_str());
-    if (source == nullptr || missing <= 0.0) continue;
-    for (const std::size_t i : {order[0], order[1]}) moments[i] += 0.5 * missing;
-    source->explicitinertial = true;
-    source->fullinertia[0] = std::numeric_limits<double>::quiet_NaN();
-    std::copy(moments.begin(), moments.end(), source->inertia);
-    std::copy_n(model.body_ipos + 3 * body, 3, source->ipos);
-    std::copy_n(model.body_iquat + 4 * body, 4, source->iquat);
-    source->mass = model.body_mass[body];
-  }
+/// Writes a compiled model with numbers that are read back without loss. With MuJoCo's default of six digits, masses
+/// would not add up to 1e-6, and rounded moments of inertia could violate A + B >= C.
+std::string exact_xml_of(const mjSpec& spec, const std::string& path) {
+  const int digits = _mjPRIVATE__get_xml_precision();
+  _mjPRIVATE__set_xml_precision(std::numeric_limits<double>::max_digits10);
+  std::string xml(std::size_t{1} << 24, '\0'), error(1000, '\0');
+  const int failure =
+      mj_saveXMLString(&spec, xml.data(), static_cast<int>(xml.size()), error.data(), static_cast<int>(error.size()));
+  _mjPRIVATE__set_xml_precision(digits);
+  if (failure != 0) throw InputError(fmt::format("{}: cannot be written as MJCF: {}", path, error.c_str()));
+  xml.resize(xml.find('\0'));
+  return xml;
 }
 
 }  // namespace
@@ -205,7 +203,6 @@ std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot) 
   add_robot(*spec, robot_urdf, robot, to_pose3(Pose2{}, height_m));
   complete_inertial_frames(*spec);
   const ModelPtr model = compile(*spec, robot_urdf.path);
-  keep_inertias_valid(*spec, *model);
   std::vector<double> qpos(model->qpos0, model->qpos0 + model->nq);
   set_standing_posture(*model, robot, qpos.data());
   if (!robot.legs.empty())  // legs that are straight at zero reach below the ground
@@ -215,12 +212,7 @@ std::string mjcf_of(const RobotUrdf& robot_urdf, const RobotDescription& robot) 
   mjs_setName(key->element, "standing");
   mjs_setDouble(key->qpos, qpos.data(), static_cast<int>(model->nq));
   compile(*spec, robot_urdf.path);
-  std::string xml(std::size_t{1} << 24, '\0'), error(1000, '\0');
-  if (mj_saveXMLString(spec.get(), xml.data(), static_cast<int>(xml.size()), error.data(),
-                       static_cast<int>(error.size())) != 0)
-    throw InputError(fmt::format("{}: cannot be written as MJCF: {}", robot_urdf.path, error.c_str()));
-  xml.resize(xml.find('\0'));
-  return xml;
+  return exact_xml_of(*spec, robot_urdf.path);
 }
 
 AssembledModel assemble_model(const std::string& world_xml, const RobotUrdf& robot_urdf, const RobotDescription& robot,

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "core/error.h"
+#include "core/gravity.h"
 
 namespace patrol::sim {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 constexpr double kSpringStiffness = 6000.0, kSpringDamping = 150.0;  // N/m, N s/m
 constexpr double kDroop_m = 0.02, kBump_m = 0.03;                    // travel from the loaded position
 constexpr double kWheelMass_kg = 0.8, kWheelInertia_kgm2 = 0.002;
-constexpr double kGravity_mps2 = 9.81;
 
 // Sum of the rotor inertia (flat brushless motors of 100 to 300 W: 1.2e-4 to 3.1e-4 kg m2) through a gear of 30, 6 kg
 // of belt at its pitch line, and the driven wheels. Below 0.2 the contact torque, one tick late, makes track and motor

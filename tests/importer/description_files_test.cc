@@ -18,7 +18,7 @@ namespace patrol::importer::description_files_test {
 namespace {
 
 using test::write_bytes;
-using ::testing::AllOf, ::testing::HasSubstr, ::testing::MatchesRegex;
+using ::testing::AllOf, ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
 
 TEST(PublicDescription, SpheresWithoutSizeAreLeftOut) {
   Import import(with(part("toe", shape("visual", sphere(0.0)) + shape("collision", sphere(0.0)))));
@@ -35,6 +35,17 @@ TEST(PublicDescription, AFourthNumberOfAScaleIsLeftOut) {
   EXPECT_THAT(import.robot.meshes[0].second, HasSubstr(" 0.1\n")) << "scaled by 0.002 along z";
   Import five(with(part("x", shape("visual", R"(<mesh filename="m.stl" scale="1 1 1 1 1"/>)"))));
   EXPECT_THAT(complaint(five), HasSubstr("x: scale = \"1 1 1 1 1\": must be 3 numbers"));
+}
+
+TEST(PublicDescription, MisspelledElementsAreReported) {
+  Import import(with(part("x", shape("visual", sphere(0.1)) + shape("colision", sphere(0.1)) + "<contact/>")));
+  import.load();
+  EXPECT_THAT(import.assumptions(),
+              HasSubstr("is left out: unknown element of &lt;link> | &lt;collision>, if it is meant"));
+  EXPECT_THAT(import.assumptions(), Not(HasSubstr("&lt;contact>")));
+  Import correct(with(part("x", shape("visual", sphere(0.1)) + shape("collision", sphere(0.1)))));
+  correct.load();
+  EXPECT_THAT(correct.assumptions(), Not(HasSubstr("unknown element")));
 }
 
 /// A description in urdf/ with a collision mesh, and the mesh in a folder beside it.

@@ -40,26 +40,30 @@ TEST(Mjcf, StockMujocoReadsTheFileOfEachRobotWithTheSameCoordinatesBodiesAndMass
     EXPECT_EQ(read->nu, built.view->nu);
     EXPECT_EQ(read->nbody, built.view->nbody);
     EXPECT_EQ(read->ngeom, built.view->ngeom);
-    EXPECT_NEAR(mj_getTotalmass(read.get()), mj_getTotalmass(built.view.get()), 1e-6);
+    EXPECT_NEAR(mj_getTotalmass(read.get()), mj_getTotalmass(built.view.get()), 1e-9);
     ASSERT_EQ(read->nbody, built.view->nbody);
     for (int i = 0; i < 3 * read->nbody; ++i) {
-      EXPECT_NEAR(read->body_ipos[i], built.view->body_ipos[i], 1e-5) << name_of(*read, mjOBJ_BODY, i / 3);
-      EXPECT_NEAR(read->body_inertia[i], built.view->body_inertia[i], 1e-5 + 1e-5 * built.view->body_inertia[i])
-          << name_of(*read, mjOBJ_BODY, i / 3);
+      EXPECT_NEAR(read->body_ipos[i], built.view->body_ipos[i], 1e-9) << name_of(*read, mjOBJ_BODY, i / 3);
+      EXPECT_NEAR(read->body_inertia[i], built.view->body_inertia[i], 1e-9) << name_of(*read, mjOBJ_BODY, i / 3);
     }
     ASSERT_EQ(read->nkey, 1);
     for (int i = 7; i < read->nq; ++i)
-      EXPECT_NEAR(read->key_qpos[i], built.start_qpos[static_cast<std::size_t>(i)], 1e-5);
+      EXPECT_NEAR(read->key_qpos[i], built.start_qpos[static_cast<std::size_t>(i)], 1e-9);
     EXPECT_NEAR(mj_getTotalmass(read.get()), io::load_robot_description(urdf_of(name)).mass_kg, 1e-6);
   }
 }
 
-// The moments of the chassis have A + B = C. With six digits, 0.123456 + 0.234567 < 0.358024.
-TEST(Mjcf, StockMujocoReadsARobotWhoseInertiasAreThoseOfAFlatPlate) {
+// The moments of the chassis have A + B = C. With MuJoCo's six digits, 0.123456 + 0.234567 < 0.358024, and 12.3456789
+// kg would be 12.3457 kg.
+TEST(Mjcf, StockMujocoReadsTheMassAndTheMomentsOfAFlatPlateWithoutLoss) {
   std::string urdf = test::skid_steer_urdf(0.5, 0.6).text();
-  const std::size_t at = urdf.find("<inertia "), end = urdf.find("/>", at);
-  ASSERT_NE(at, std::string::npos);
-  urdf.replace(at, end - at, R"(<inertia ixx="0.1234564" ixy="0" ixz="0" iyy="0.2345674" iyz="0" izz="0.3580238")");
+  const auto replace = [&urdf](const std::string& tag, const std::string& element) {
+    const std::size_t at = urdf.find(tag), end = urdf.find("/>", at);
+    ASSERT_NE(at, std::string::npos);
+    urdf.replace(at, end + 2 - at, element);
+  };
+  replace("<mass ", R"(<mass value="12.3456789"/>)");
+  replace("<inertia ", R"(<inertia ixx="0.1234564" ixy="0" ixz="0" iyy="0.2345674" iyz="0" izz="0.3580238"/>)");
   const test::TemporaryFolder folder;
   test::write_bytes(folder / "plate.urdf", urdf);
   const std::string file = (folder / "plate.urdf").string();
@@ -70,8 +74,10 @@ TEST(Mjcf, StockMujocoReadsARobotWhoseInertiasAreThoseOfAFlatPlate) {
   const int base = mj_name2id(read.get(), mjOBJ_BODY, "base_link");
   std::vector<double> moments(read->body_inertia + 3 * base, read->body_inertia + 3 * base + 3);
   std::sort(moments.begin(), moments.end());
-  EXPECT_NEAR(moments[0], 0.1234564, 1e-5);
-  EXPECT_NEAR(moments[2], 0.3580238, 1e-6);
+  EXPECT_NEAR(moments[0], 0.1234564, 1e-12);
+  EXPECT_NEAR(moments[1], 0.2345674, 1e-12);
+  EXPECT_NEAR(moments[2], 0.3580238, 1e-12);
+  EXPECT_NEAR(read->body_mass[base], 12.3456789, 1e-12);
 }
 
 /// Points on the edges of a geom, seen from above, in the frame of the base.

@@ -10,12 +10,11 @@
 
 #include "app/check/measurements.h"
 #include "core/geometry/angles.h"
+#include "core/gravity.h"
 #include "core/wheel_kinematics.h"
 
 namespace patrol::app {
 namespace {
-
-constexpr double kGravity_mps2 = 9.81;
 
 // Limits, each with the reason that the page prints.
 constexpr const char* kTiltOfPlane = "with this tilt, a planar lidar 0.5 m above the ground hits it at 5.7 m";

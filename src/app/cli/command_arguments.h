@@ -29,6 +29,14 @@ inline std::vector<const CLI::Option*> positionals_of(const CLI::App& command) {
 
 inline bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
+/// Returns the values of which an argument is one; empty if any are allowed.
+inline std::vector<std::string> choices_of(const CLI::Option& argument) {
+  const std::string type = argument.get_type_name();  // for example TEXT:{y,z}
+  const std::size_t begin = type.find('{'), end = type.find('}');
+  if (begin == std::string::npos || end == std::string::npos) return {};
+  return CLI::detail::split(type.substr(begin + 1, end - begin - 1), ',');
+}
+
 /// Name of an option with its two hyphens.
 inline std::string long_name(const CLI::Option& option) { return "--" + option.get_lnames().front(); }
 

@@ -41,35 +41,65 @@ std::string upper(std::string text) {
   return text;
 }
 
+/// Cases of bash for the word after an option, or after the command, that is one of several values.
+std::string bash_choices(const CLI::App& command, const std::string& name) {
+  std::string cases;
+  const auto add = [&cases, &name](const std::string& previous, const CLI::Option& argument) {
+    const std::vector<std::string> choices = choices_of(argument);
+    if (!choices.empty()) cases += fmt::format("    '{} {}') choices='{}' ;;\n", name, previous, join(choices, " "));
+  };
+  const std::vector<const CLI::Option*> positionals = positionals_of(command);
+  if (!positionals.empty()) add(name, *positionals.front());
+  for (const CLI::Option* option : options_of(command)) add(long_name(*option), *option);
+  return cases;
+}
+
+/// Value of an argument in a specification of zsh.
+std::string zsh_value(const CLI::Option& argument) {
+  const std::vector<std::string> choices = choices_of(argument);
+  return choices.empty() ? ":value:_files" : fmt::format(":value:({})", join(choices, " "));
+}
+
+/// Positional arguments of a command in a specification of zsh.
+std::string zsh_positionals(const CLI::App& command) {
+  const std::vector<const CLI::Option*> positionals = positionals_of(command);
+  const bool has_choices = !positionals.empty() && !choices_of(*positionals.front()).empty();
+  return has_choices ? fmt::format("'1{}' '*:file:_files'", zsh_value(*positionals.front())) : "'*:file:_files'";
+}
+
 }  // namespace
 
 std::string bash_completion(const CLI::App& app) {
   std::vector<std::string> names;
-  std::string cases;
+  std::string cases, choices;
   for (const CLI::App* command : commands_of(app)) {
     const std::vector<std::string> all = names_of(*command);
     names.insert(names.end(), all.begin(), all.end());
     std::vector<std::string> options;
     for (const CLI::Option* option : options_of(*command)) options.push_back(long_name(*option));
     cases += fmt::format("    {}) options='{}' ;;\n", join(all, "|"), join(options, " "));
+    for (const std::string& name : all) choices += bash_choices(*command, name);
   }
   return fmt::format(
       "# Completion of patrol for bash.\n"
       "_patrol() {{\n"
-      "  local word=${{COMP_WORDS[COMP_CWORD]}} options=\n"
+      "  local word=${{COMP_WORDS[COMP_CWORD]}} options= choices=\n"
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
       "    mapfile -t COMPREPLY < <(compgen -W '{} --help --version' -- \"$word\")\n"
       "    return\n"
       "  fi\n"
       "  case ${{COMP_WORDS[1]}} in\n{}  esac\n"
-      "  if [[ $word == -* ]]; then\n"
+      "  case \"${{COMP_WORDS[1]}} ${{COMP_WORDS[COMP_CWORD-1]}}\" in\n{}  esac\n"
+      "  if [[ -n $choices && ( $COMP_CWORD -gt 2 || $word != -* ) ]]; then\n"
+      "    mapfile -t COMPREPLY < <(compgen -W \"$choices\" -- \"$word\")\n"
+      "  elif [[ $word == -* ]]; then\n"
       "    mapfile -t COMPREPLY < <(compgen -W \"$options\" -- \"$word\")\n"
       "  else\n"
       "    mapfile -t COMPREPLY < <(compgen -f -- \"$word\")\n"
       "  fi\n"
       "}}\n"
       "complete -o filenames -F _patrol patrol\n",
-      join(names, " "), cases);
+      join(names, " "), cases, choices);
 }
 
 std::string zsh_completion(const CLI::App& app) {
@@ -78,11 +108,11 @@ std::string zsh_completion(const CLI::App& app) {
     const std::vector<std::string> all = names_of(*command);
     for (const std::string& name : all)
       names += fmt::format("    '{}:{}'\n", name, in_quotes(escaped(command->get_description(), ":")));
-    cases += fmt::format("    {}) _arguments '*:file:_files'", join(all, "|"));
+    cases += fmt::format("    {}) _arguments {}", join(all, "|"), zsh_positionals(*command));
     for (const CLI::Option* option : options_of(*command)) {
       cases += fmt::format(" \\\n      '*{}[{}]{}'", long_name(*option),
                            in_quotes(escaped(option->get_description(), "[]:")),
-                           takes_value(*option) ? ":value:_files" : "");
+                           takes_value(*option) ? zsh_value(*option) : "");
     }
     cases += " ;;\n";
   }

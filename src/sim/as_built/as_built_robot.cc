@@ -5,12 +5,11 @@
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
+#include "core/gravity.h"
 #include "core/random.h"
 
 namespace patrol::sim {
 namespace {
-
-constexpr double kGravity_mps2 = 9.81;
 
 /// Returns the specific force in the frame of the IMU while the body stands level.
 Eigen::Vector3d force_at_rest_mps2(const RobotDescription& robot) {

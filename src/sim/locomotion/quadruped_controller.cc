@@ -9,13 +9,12 @@
 #include "core/error.h"
 #include "core/frames.h"
 #include "core/geometry/linear_algebra.h"
+#include "core/gravity.h"
 #include "sim/locomotion/swing_trajectory.h"
 #include "sim/locomotion/velocity_ramp.h"
 
 namespace patrol::sim {
 namespace {
-
-constexpr double kGravity = 9.81;  // m/s2
 
 constexpr double kWakeUp_s = 1.2;     // until the estimator has settled
 constexpr double kEarlyTouch = 0.55;  // swing fraction from which a contact counts as touch-down
@@ -186,7 +185,7 @@ Eigen::Vector3d QuadrupedController::touch_down(const TrunkState& trunk, int leg
   // no offset: the feet are farther apart along x.
   const Eigen::Vector2d push_mps2 = yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x()) +
                                     Eigen::Vector2d(0.0, gains_.velocity_integral * velocity_integral_.y());
-  const Eigen::Vector2d outwards = -settings_.trunk_height_m / kGravity * push_mps2;
+  const Eigen::Vector2d outwards = -settings_.trunk_height_m / kGravity_mps2 * push_mps2;
   const Eigen::Vector2d foot = hip + outwards + step.cwiseMax(-gains_.max_step_m).cwiseMin(gains_.max_step_m);
   return {foot.x(), foot.y(), ground_offset_m_ + slope_.dot(foot)};
 }
@@ -207,7 +206,7 @@ Eigen::Vector3d QuadrupedController::swing_force(const TrunkState& trunk, int le
 Eigen::Vector3d QuadrupedController::wake_up_force(const TrunkState& trunk, int leg) const {
   const Eigen::Vector2d posture = neutral_foot_m(leg);
   const Eigen::Vector3d foot_in_body(posture.x(), posture.y(), -settings_.trunk_height_m);
-  const Eigen::Vector3d weight(0.0, 0.0, robot_.mass_kg * kGravity / kNumLegs);
+  const Eigen::Vector3d weight(0.0, 0.0, robot_.mass_kg * kGravity_mps2 / kNumLegs);
   const Eigen::Vector3d error = foot_in_body - trunk.R_level_body.transpose() * trunk.foot_m[leg];
   const Eigen::Vector3d velocity = trunk.foot_velocity_mps[leg] - trunk.rate_radps.cross(trunk.foot_m[leg]);
   return weight - trunk.R_level_body * (gains_.wake_up_stiffness_npm * error) + gains_.wake_up_damping_nspm * velocity;
@@ -258,7 +257,7 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
   const Eigen::Vector2d centripetal = yaw_rate_radps_ * Eigen::Vector2d(-velocity.y(), velocity.x());
   force.head<2>() =
       robot_.mass_kg * (velocity_gain * velocity_error + gains_.velocity_integral * velocity_integral_ + centripetal);
-  force.z() = robot_.mass_kg * (kGravity + gains_.height_stiffness * (settings_.trunk_height_m - height_m) -
+  force.z() = robot_.mass_kg * (kGravity_mps2 + gains_.height_stiffness * (settings_.trunk_height_m - height_m) -
                                 gains_.height_damping * (center_mps.z() - slope_.dot(velocity)));
 
   const double wanted_pitch = -settings_.slope_following * std::atan(slope_.x());

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/gravity.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kGravity_mps2 = 9.81;
 constexpr double kImpedance = 0.1;         // of the constraint in MuJoCo's contact: low for a spring
 constexpr double kMaxPhase_rad = 0.25;     // of the oscillation of a tire in a time step
 constexpr double kFrictionRatio = 1000.0;  // impratio

@@ -5,12 +5,12 @@
 
 #include <Eigen/Geometry>
 
+#include "core/gravity.h"
 #include "core/leg_kinematics.h"
 
 namespace patrol::sim {
 namespace {
 
-constexpr double kTrunkGravity_mps2 = 9.81;
 constexpr double kAttitudeTime_s = 2.0;  // time constant of the accelerometer in roll and pitch
 constexpr double kSettlingTime_s = 0.1;  // time constant of the accelerometer in the first second, before the
                                          // estimate has converged
@@ -46,7 +46,7 @@ void TrunkEstimator::update_attitude(const Imu& imu) {
   const Eigen::Vector3d force = imu.linear_acceleration_mps2 - state_.R_level_body.transpose() * centripetal;
   const double size = force.norm();
   up_in_body_ += tick_s_ * up_in_body_.cross(omega);
-  if (std::abs(size - kTrunkGravity_mps2) < 0.5 * kTrunkGravity_mps2) {
+  if (std::abs(size - kGravity_mps2) < 0.5 * kGravity_mps2) {
     const double time_s = age_s_ < kSettling_s ? kSettlingTime_s : kAttitudeTime_s;
     up_in_body_ += (tick_s_ / time_s) * (force / size - up_in_body_);
   }
@@ -82,7 +82,7 @@ void TrunkEstimator::update_feet(const Imu& imu, const JointState& joints, const
 void TrunkEstimator::update_velocity(const Imu& imu) {
   Eigen::Vector3d& velocity = state_.velocity_mps;
   const Eigen::Vector3d acceleration =
-      state_.R_level_body * imu.linear_acceleration_mps2 - kTrunkGravity_mps2 * Eigen::Vector3d::UnitZ();
+      state_.R_level_body * imu.linear_acceleration_mps2 - kGravity_mps2 * Eigen::Vector3d::UnitZ();
   velocity += tick_s_ * (acceleration - state_.rate_radps.z() * Eigen::Vector3d::UnitZ().cross(velocity));
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   int count = 0;

@@ -8,8 +8,8 @@ namespace patrol::sim {
 
 double air_pressure_pa(const BarometerSettings& settings, double height_m) {
   constexpr double kLapse_Kpm = 0.0065;
-  constexpr double kGravity_mps2 = 9.80665, kMolarMass_kgpmol = 0.0289644, kGas_JpmolK = 8.31432;
-  constexpr double kExponent = kGravity_mps2 * kMolarMass_kgpmol / (kGas_JpmolK * kLapse_Kpm);
+  constexpr double kStandardGravity_mps2 = 9.80665, kMolarMass_kgpmol = 0.0289644, kGas_JpmolK = 8.31432;
+  constexpr double kExponent = kStandardGravity_mps2 * kMolarMass_kgpmol / (kGas_JpmolK * kLapse_Kpm);
   const double temperature_k = settings.sea_level_temperature_c + 273.15;
   const double altitude_m = settings.origin_altitude_m + height_m;
   return settings.sea_level_pa * std::pow(1.0 - kLapse_Kpm * altitude_m / temperature_k, kExponent);

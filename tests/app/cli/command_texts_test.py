@@ -42,12 +42,19 @@ class Texts(unittest.TestCase):
         for command, options in commands().items():
             self.assertEqual(self.completed("patrol", command, "--"), options, command)
 
+    def test_bash_completes_values_of_a_list(self):
+        self.assertEqual(self.completed("patrol", "import", ""), {"robot", "site"})
+        self.assertEqual(self.completed("patrol", "import", "robot", "--drive", "m"), {"mecanum"})
+        self.assertEqual(self.completed("patrol", "import", "robot", "--forward", "-"), {"-x", "-y"})
+
     def test_zsh_accepts_its_script_and_it_names_every_option(self):
         script = printed("zsh-completion")
         for command, options in commands().items():
             self.assertIn(f"'{command}:", script)
             for option in options:
                 self.assertIn(f"{option}[", script)
+        self.assertIn(":value:(differential ackermann mecanum legs)'", script)
+        self.assertIn("'1:value:(robot site)'", script)
         if shutil.which("zsh"):
             self.assertEqual(subprocess.run(["zsh", "-n"], input=script, capture_output=True, text=True).stderr, "")
 

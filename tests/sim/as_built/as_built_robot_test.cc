@@ -140,11 +140,11 @@ TEST(AsBuiltRobot, PlacementErrorStaysWithinTwoCentimetersAndHalfADegree) {
 /// Standard deviations of the sheet: 0.5 deg/s, 20 mg, 1 % and 0.05 deg at two standard deviations. The section
 /// sensors.imu has a share in them.
 TEST(AsBuiltRobot, ConstantErrorsOfAnImuAddUpToItsDataSheet) {
-  constexpr double kGravity_mps2 = 9.80665;
+  constexpr double kStandardGravity_mps2 = 9.80665;
   const ImuSettings share;
   const ImuTolerances rest;
   EXPECT_NEAR(std::hypot(share.gyro_bias_std_radps, rest.gyro_bias_std_radps), 0.5 * kDegree, 0.003 * 0.5 * kDegree);
-  EXPECT_NEAR(std::hypot(share.accel_bias_std_mps2, rest.accel_bias_std_mps2), 0.02 * kGravity_mps2, 0.0006);
+  EXPECT_NEAR(std::hypot(share.accel_bias_std_mps2, rest.accel_bias_std_mps2), 0.02 * kStandardGravity_mps2, 0.0006);
   EXPECT_NEAR(std::hypot(share.scale_error_std, rest.scale_std), 0.01 / 2.0, 0.00002);
   EXPECT_NEAR(std::hypot(share.misalignment_std_deg, rest.misalignment_std_deg), 0.05 / 2.0, 1e-12);
 

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "core/gravity.h"
 #include "core/wheel_kinematics.h"
 #include "tests/support/simulated_quadruped.h"
 #include "tests/support/simulated_wheeled_robot.h"
@@ -18,8 +19,6 @@
 
 namespace patrol::sim::roller_contact_test {
 namespace {
-
-constexpr double kGravity_mps2 = 9.81;
 
 WheelDriveSettings mecanum(double friction = 0.8) {
   WheelDriveSettings settings;
