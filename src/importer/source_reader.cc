@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/letter_case.h"
 #include "io/files/one_line.h"
+#include "io/files/xml_problem.h"
 
 namespace patrol::importer {
 
@@ -23,14 +24,6 @@ namespace {
 const std::map<std::string, JointType> kJointTypes = {
     {"fixed", JointType::kFixed},         {"continuous", JointType::kContinuous}, {"revolute", JointType::kRevolute},
     {"prismatic", JointType::kPrismatic}, {"floating", JointType::kFloating},     {"planar", JointType::kPlanar}};
-
-/// Returns XML_ERROR_MISMATCHED_ELEMENT as "mismatched element".
-std::string plain_words(std::string name) {
-  const std::string prefix = "XML_ERROR_";
-  if (name.starts_with(prefix)) name.erase(0, prefix.size());
-  for (char& c : name) c = c == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return name;
-}
 
 /// Returns the path that a description names; empty if its package is unknown.
 std::filesystem::path named_path(const Packages& packages, const std::string& uri) {
@@ -52,9 +45,7 @@ SourceReader::SourceReader(const std::string& file, const std::string& text, con
   }
   if (trimmed(text.c_str()).empty()) throw InputError(file + ": is empty: must be a URDF file");
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    const std::string reason = document_.ErrorID() == tinyxml2::XML_ERROR_PARSING ? "incomplete or not well-formed"
-                                                                                  : plain_words(document_.ErrorName());
-    throw input_error(file, document_.ErrorLineNum(), "not an XML file: " + reason);
+    throw input_error(file, document_.ErrorLineNum(), "not an XML file: " + io::xml_problem(document_));
   }
 }
 

@@ -10,7 +10,7 @@ void add_run(CLI::App& app, Call& call) {
   add_scenario(*command, run.scenario)->required(false);
   command->add_option("--set", run.overrides, kSetHelp)->take_all();
   command->add_option("--seed", run.seed, kSeedHelp);
-  command->add_option("--robot", run.robot, "Robot instead of that of the scenario");
+  command->add_option("--robot", run.robot, "Robot instead of that of the scenario; of a world: quadruped");
   command
       ->add_option("--goal", run.goals,
                    "Goal X,Y or X,Y,DEG in the site instead of the mission (repeatable); the scenario may be a world")

@@ -8,6 +8,7 @@
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/mapping/read_scans.h"
+#include "app/record/run_directory.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "io/files/csv.h"
@@ -143,17 +144,18 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.skip_invalid) overrides.emplace_back("log.skip_invalid=true");
   const auto settings = io::parse_settings<LogCalibrationSettings>(overrides);
+  const std::filesystem::path file = log_of(options.log);
   std::optional<CalibratedLog> log;
   for (int pass = 1; pass <= settings.passes; ++pass) {
     const slam::Calibration prior = log ? log->result.calibration() : slam::Calibration{};
-    log = calibrate_once(options.log, settings, prior,
-                         fmt::format("{}, {} of {}", options.log.filename().string(), pass, settings.passes));
+    log = calibrate_once(file, settings, prior,
+                         fmt::format("{}, {} of {}", file.filename().string(), pass, settings.passes));
     if (!log) break;
   }
   if (log) {
     const std::string reason =
         slam::calibration_contradiction(log->pairs, log->result, settings.calibrator.min_segments);
-    if (!reason.empty()) throw InputError(fmt::format("{}: {}", options.log.string(), reason));
+    if (!reason.empty()) throw InputError(fmt::format("{}: {}", file.string(), reason));
   }
   const OutputLock lock = begin_output(options.out, kCalibrating);  // not earlier: a damaged log must leave no output
   if (!log) {
@@ -162,7 +164,7 @@ ExitCode calibrate_command(const CalibrateOptions& options) {
   }
   const slam::CalibrationResult& result = log->result;
   io::save_settings(options.out / "calibration.yaml", result.calibration(),
-                    "from " + options.log.filename().string() + "; for patrol slam --calibration");
+                    "from " + file.filename().string() + "; for patrol slam --calibration");
   io::save_csv(options.out / "segments.csv", segment_table(*log));
   io::save_metrics(options.out / "metrics.json", metrics_of(*log));
   io::save_settings(options.out / "settings.yaml", settings);

@@ -12,6 +12,7 @@
 #include "app/common/progress_bar.h"
 #include "app/common/temporary_folder.h"
 #include "app/mapping/log_site.h"
+#include "app/record/run_directory.h"
 #include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "importer/robot_import.h"
@@ -78,10 +79,13 @@ void refuse_known_name(const std::string& robot, const std::filesystem::path& ou
                                out.string(), robot, known.parent_path().string()));
 }
 
-/// Returns the clearance in which a robot can turn in place with a margin.
-double turning_clearance_m(const std::string& robot) {
+/// Sets the space that a robot needs to turn in place with a margin, and to pass.
+void set_clearances(const RobotDescription& robot, importer::MissionOptions& mission) {
   constexpr double kMargin_m = 0.1;
-  return io::load_robot_description(find_robot(robot, find_data_root({})).string()).outline_radius_m() + kMargin_m;
+  mission.clearance_m = robot.outline_radius_m() + kMargin_m;
+  mission.half_width_m = 0.0;
+  for (const Eigen::Vector2d& corner : robot.footprint_m)
+    mission.half_width_m = std::max(mission.half_width_m, std::abs(corner.y()));
 }
 
 /// Returns the Python interpreter that tools/setup installs in the source tree, otherwise that of the system.
@@ -126,8 +130,9 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
 }
 
 ExitCode import_site_command(const ImportSiteOptions& options) {
-  importer::refuse_unused_options(options.file, options.given);
-  importer::SiteImportOptions import{.file = options.file,
+  const std::filesystem::path file = log_of(options.file);
+  importer::refuse_unused_options(file, options.given);
+  importer::SiteImportOptions import{.file = file,
                                      .name = folder_name(options.out),
                                      .wall_height_m = options.wall_height_m,
                                      .scale = options.scale,
@@ -139,8 +144,8 @@ ExitCode import_site_command(const ImportSiteOptions& options) {
                                                  .seed = options.seed,
                                                  .robot = options.robot}};
   if (!options.start.empty()) import.mission.start = parse_pose(options.start, "--start", {}).pose();
-  import.mission.clearance_m = turning_clearance_m(options.robot);
-  const bool is_log = importer::site_format(options.file) == importer::SiteFormat::kLog;
+  set_clearances(io::load_robot_description(find_robot(options.robot, find_data_root({})).string()), import.mission);
+  const bool is_log = importer::site_format(file) == importer::SiteFormat::kLog;
   const std::optional<importer::ImportedSite> site = is_log ? import_log_site(import) : import_with_progress(import);
   if (!site || !write_unless_interrupted(*site, options.out)) {
     fmt::print(stderr, "patrol: interrupted; nothing was written\n");

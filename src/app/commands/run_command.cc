@@ -234,7 +234,8 @@ ExitCode run_command(const RunOptions& options) {
     return ExitCode::kProgramFailed;
   }
 
-  const std::string title = fmt::format("{}/{}, seed {}", scenario.world, name, scenario.seed);
+  const std::string robot = named_world(options) ? scenario.robot + ", " : "";  // which the user may not have named
+  const std::string title = fmt::format("{}/{}, {}seed {}", scenario.world, name, robot, scenario.seed);
   print_result(options.form,
                options.show_all ? run_details(title, *verdict, root, output_style())
                                 : run_summary(title, *verdict, root, output_style()),

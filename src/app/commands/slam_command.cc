@@ -17,6 +17,7 @@
 #include "app/mapping/odometry_report.h"
 #include "app/mapping/read_scans.h"
 #include "app/mapping/submap_graph_files.h"
+#include "app/record/run_directory.h"
 #include "core/thread_cpu_time.h"
 #include "io/files/atomic_file.h"
 #include "io/files/csv.h"
@@ -147,8 +148,9 @@ ExitCode slam_command(const SlamOptions& options) {
   LogMappingSettings settings;
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section({"--set", overrides}, io::parse_overrides(overrides), "", settings);
-  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.log, settings.log);
-  const std::string adaptation = adapt_to_log(options.log, settings);
+  const std::filesystem::path file = log_of(options.log);
+  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
+  const std::string adaptation = adapt_to_log(file, settings);
   const std::unique_ptr<slam::Mapper> mapper = make_log_mapper(settings);
   std::size_t num_earlier_nodes = 0;
   if (options.earlier_map) {
@@ -162,7 +164,7 @@ ExitCode slam_command(const SlamOptions& options) {
 
   const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
   MappedLog mapped;
-  const bool is_whole = map_log(*log, settings, options.log.filename().string(), *mapper, mapped);
+  const bool is_whole = map_log(*log, settings, file.filename().string(), *mapper, mapped);
   const OutputLock lock = begin_output(options.out, kMapping);  // not earlier: a damaged log must leave no output
   if (!is_whole) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
@@ -207,7 +209,7 @@ ExitCode slam_command(const SlamOptions& options) {
   metrics["consistency"] = consistency.metrics();
   metrics["odometry"] = odometry.metrics();
   io::save_metrics(options.out / "metrics.json", metrics);
-  const MappingContents contents{.log = options.log.filename().string(),
+  const MappingContents contents{.log = file.filename().string(),
                                  .method = settings.slam.method,
                                  .map = map,
                                  .estimate = estimate,

@@ -51,7 +51,7 @@ void add_recorded_path(const std::vector<Pose2>& path, const importer::MissionOp
   site.route = Route{.stations = importer::stations_along(path, space, spacing_m)};
   site.assumptions.push_back(
       {"mission",
-       fmt::format("the recorded path, {:.0f} m, a station every {:.1f} m where the clearance is {:g} m", length_m,
+       fmt::format("the recorded path, {:.0f} m, a station every {:.1f} m where the clearance is {:.2f} m", length_m,
                    spacing_m, options.clearance_m),
        "--stations or --random-stations"});
 }

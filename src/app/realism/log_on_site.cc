@@ -8,13 +8,16 @@
 #include <fmt/format.h>
 
 #include "app/mapping/read_scans.h"
+#include "app/record/run_directory.h"
 #include "app/record/run_record.h"
 #include "app/scenario/data_folders.h"
 #include "app/scenario/lidar_preset.h"
+#include "app/scenario/mounts.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "io/trajectories/tum.h"
+#include "io/urdf.h"
 
 namespace patrol::app {
 namespace {
@@ -84,8 +87,9 @@ bool is_path_exact(const LogOnSiteOptions& options) {
 
 LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSettings& settings) {
   LogOnSite source;
-  source.log = std::filesystem::is_directory(options.log) ? options.log / "log.mcap" : options.log;
-  if (!std::filesystem::exists(source.log)) throw InputError(fmt::format("{}: log not found", source.log.string()));
+  source.log = log_of(options.log);
+  if (!std::filesystem::is_regular_file(source.log))
+    throw InputError(fmt::format("{}: log not found", source.log.string()));
   const std::optional<std::filesystem::path> scenario_file = scenario_of_log(source.log);
   source.is_run = scenario_file.has_value();
   std::string site = options.site, lidar = options.lidar;
@@ -96,8 +100,9 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
     if (site.empty()) site = scenario.world;
     if (lidar.empty()) of_run = LidarPreset{.lidar = scenario.sensors.lidar, .as_built = scenario.as_built.lidar};
     if (source.path_name.empty()) source.path_name = "truth";
-    const RobotDescription robot = load_scenario_files(scenario, find_data_root(*scenario_file)).robot;
-    source.T_body_lidar = robot.T_body("lidar");
+    const std::filesystem::path urdf = find_robot(scenario.robot, find_data_root(*scenario_file));
+    source.T_body_lidar =
+        io::load_mounted_robot(urdf.string(), sensor_mounts(scenario.mounts)).description.T_body("lidar");
   }
   if (site.empty()) throw InputError("--site: required for a log that is not of patrol run");
   if (source.path_name.empty()) throw InputError("--trajectory: required for a log that is not of patrol run");

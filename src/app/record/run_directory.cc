@@ -38,6 +38,11 @@ RunDirectory begin_run_directory(const std::filesystem::path& root) {
   return {.root = root, .lock = std::make_shared<const OutputLock>(begin_output(root, kRun))};
 }
 
+std::filesystem::path log_of(const std::filesystem::path& run_or_log) {
+  const RunDirectory run{run_or_log};
+  return std::filesystem::is_directory(run_or_log) && std::filesystem::exists(run.log()) ? run.log() : run_or_log;
+}
+
 RunDirectory open_run_directory(const std::filesystem::path& root) {
   RunDirectory directory{root};
   if (!std::filesystem::exists(directory.log())) {

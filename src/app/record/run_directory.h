@@ -43,6 +43,9 @@ inline constexpr const char* kFedComment = "stack fed with ";
 /// InputError if results of that run have not been uploaded.
 RunDirectory begin_run_directory(const std::filesystem::path& root);
 
+/// Returns the log of a run directory; another path as it is.
+std::filesystem::path log_of(const std::filesystem::path& run_or_log);
+
 /// Opens the directory of an existing run. Throws InputError if it contains no log.
 RunDirectory open_run_directory(const std::filesystem::path& root);
 

@@ -151,7 +151,7 @@ SiteShape contact_shape(std::string name, SiteShapeType type) {
 void add_ground(const GroundSurface& ground, const GridGeometry& grid, ContactGeometry& contact) {
   const auto [lowest, highest] = std::minmax_element(ground.height_m.values().begin(), ground.height_m.values().end());
   contact.ground_area_m2 = ground.area_m2;
-  if (ground.is_found && ground.own_area_m2 < 1e-3 * ground.area_m2) {
+  if (ground.is_found && ground.own_area_m2 <= 1e-3 * ground.area_m2) {
     contact.rows.push_back({"ground", "the surfaces with contact of their own", ""});
     return;
   }

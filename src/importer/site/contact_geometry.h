@@ -36,9 +36,11 @@ SiteMaterial contact_material();
 /// Makes contact geometry for triangles, because MuJoCo collides a mesh by its convex hull. Connected components that
 /// are convex to 2 cm become their hulls. The ground becomes a plane if it is level to 1 cm, otherwise a height field.
 /// It is the connected surface, walkable (slope up to 45 degrees, steps up to a cell, 0.2 m of free height), that
-/// contains `start`; else, of those that face up and have at least a quarter of the largest area, the lowest. All other
-/// surfaces up to `height_m` above the ground become boxes of whole cells, exact to 1 cm in height, and merged where
-/// tops are equal. Surfaces below the ground and above that height have no contact.
+/// contains `start`; else, of those that face up, have 1 m of free height and at least a quarter of the largest area,
+/// the lowest. Given surfaces below the mesh are the ground if the mesh has no surface of 1 m2, or only the top of an
+/// object below 20 m2, more than 0.3 m above them. All other surfaces up to `height_m` above the ground become boxes of
+/// whole cells, exact to 1 cm in height, and merged where tops are equal. Surfaces below the ground and above that
+/// height have no contact.
 ///
 /// `mesh`: triangles in site, z up. `given`: surfaces with contact of their own, which take part in the search for the
 /// ground only. Throws InputError without file if there is no walkable surface at `start`, or for coordinates above

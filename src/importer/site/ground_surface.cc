@@ -22,6 +22,9 @@ constexpr double kMaxWrongRatio = 0.05;   // of the edges of triangles that face
 constexpr double kSame_m = 1e-3;          // samples closer than this are one
 constexpr double kMinGround_m2 = 1.0;     // smaller surfaces are no ground by rule
 constexpr double kMinGroundRatio = 0.25;  // of the largest surface
+constexpr double kMaxSlab_m = 0.5;        // thickness of a slab whose underside faces up
+constexpr double kMaxTop_m2 = 20.0;       // tops of furniture, vehicles and containers are smaller
+constexpr double kMinTop_m = 0.3;         // height of such a top above the floor
 
 /// Surface at the center of a cell.
 struct SurfaceSample {
@@ -152,10 +155,13 @@ bool is_oriented(const Mesh& mesh) {
 struct WalkableSurface {
   std::size_t count = 0;
   std::size_t num_up = 0;  ///< samples that face up; of a mesh that is not oriented, samples with `kStandingFree_m`
+  std::size_t num_standing = 0;  ///< samples with `kStandingFree_m`
+  std::size_t num_given = 0;     ///< samples of given surfaces
   double sum_z_m = 0.0;
 
   double mean_z_m() const { return sum_z_m / static_cast<double>(count); }
   bool faces_up() const { return 2 * num_up > count; }
+  bool is_for_standing() const { return 2 * num_standing > count; }
 };
 
 /// Labels connected walkable surfaces. Top and underside of a slab stay apart, also with cells larger than the slab is
@@ -174,8 +180,11 @@ std::vector<WalkableSurface> label_surfaces(SurfaceSamples& samples, double rise
       const SurfaceSample here = samples.all()[at];
       queue.pop_back();
       ++surface.count;
-      const bool is_up = is_mesh_oriented ? here.faces_up : samples.has_free_height(at, kStandingFree_m);
+      const bool is_standing = samples.has_free_height(at, kStandingFree_m);
+      const bool is_up = is_mesh_oriented ? here.faces_up : is_standing;
       surface.num_up += is_up ? 1 : 0;
+      surface.num_standing += is_standing ? 1 : 0;
+      surface.num_given += here.is_given ? 1 : 0;
       surface.sum_z_m += double{here.z_m};
       samples.for_neighbors(here.cell, [&](std::size_t cell) {
         for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
@@ -235,35 +244,71 @@ int surface_at(SurfaceSamples& samples, const std::vector<WalkableSurface>& surf
   } else {
     const std::size_t cell =
         static_cast<std::size_t>(at.row) * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(at.col);
+    int up = -1;
+    double up_m = 0.0;
     for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
-      const int surface = samples.all()[i].surface;
-      if (surface < 0) continue;
-      if (surfaces[static_cast<std::size_t>(surface)].faces_up()) return surface;
-      if (lowest < 0) lowest = surface;
+      const int label = samples.all()[i].surface;
+      if (label < 0) continue;
+      const WalkableSurface& surface = surfaces[static_cast<std::size_t>(label)];
+      const double z_m = double{samples.all()[i].z_m};
+      if (up >= 0 && z_m - up_m > kMaxSlab_m) break;
+      if (surface.faces_up() && surface.is_for_standing()) return label;
+      if (up >= 0 && surface.is_for_standing()) return label;  // a slab whose triangles face inward
+      if (up < 0 && surface.faces_up()) up = label, up_m = z_m;
+      if (lowest < 0) lowest = label;
     }
+    if (up >= 0) return up;
   }
   if (lowest >= 0) return lowest;
   throw InputError(fmt::format("--start {:g},{:g}: no walkable surface there", start.x(), start.y()));
 }
 
+/// Label of the lowest large surface; -1 without a large one. Surfaces with room for a robot come first, since the
+/// underside of a slab whose triangles face inward faces up, then surfaces that face up.
 int surface_by_rule(const std::vector<WalkableSurface>& surfaces, double cell_m2) {
-  std::size_t largest = 0;
-  bool has_up = false;
   const auto is_large = [&](const WalkableSurface& s) {
     return static_cast<double>(s.count) * cell_m2 >= kMinGround_m2;
   };
-  for (const WalkableSurface& s : surfaces) has_up |= s.faces_up() && is_large(s);
+  const auto exists = [&](const auto& condition) {
+    return std::ranges::any_of(surfaces, [&](const WalkableSurface& s) { return is_large(s) && condition(s); });
+  };
+  const bool has_standing = exists([](const WalkableSurface& s) { return s.is_for_standing(); });
+  const auto has_room = [&](const WalkableSurface& s) { return !has_standing || s.is_for_standing(); };
+  const bool has_up = exists([&](const WalkableSurface& s) { return s.faces_up() && has_room(s); });
+  const auto is_candidate = [&](const WalkableSurface& s) { return has_room(s) && (!has_up || s.faces_up()); };
+  std::size_t largest = 0;
   for (const WalkableSurface& s : surfaces) {
-    if (s.faces_up() || !has_up) largest = std::max(largest, s.count);
+    if (is_candidate(s)) largest = std::max(largest, s.count);
   }
   int best = -1;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const WalkableSurface& s = surfaces[i];
-    if ((has_up && !s.faces_up()) || !is_large(s)) continue;
+    if (!is_candidate(s) || !is_large(s)) continue;
     if (static_cast<double>(s.count) < kMinGroundRatio * static_cast<double>(largest)) continue;
     if (best < 0 || s.mean_z_m() < surfaces[static_cast<std::size_t>(best)].mean_z_m()) best = static_cast<int>(i);
   }
   return best;
+}
+
+/// Height of the floor that given surfaces form below at least half of the grid; none without one.
+std::optional<double> given_floor_m(SurfaceSamples& samples, const GridGeometry& grid) {
+  std::vector<double> lowest_m;
+  for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+    for (std::size_t i = samples.begin(cell); i < samples.end(cell); ++i) {
+      if (!samples.all()[i].is_given) continue;
+      lowest_m.push_back(double{samples.all()[i].z_m});
+      break;
+    }
+  }
+  if (2 * lowest_m.size() < grid.size()) return std::nullopt;
+  std::ranges::nth_element(lowest_m, lowest_m.begin() + static_cast<std::ptrdiff_t>(lowest_m.size() / 2));
+  return lowest_m[lowest_m.size() / 2];
+}
+
+/// Returns whether a surface is the top of an object of the mesh on a floor.
+bool is_top_of_object(const WalkableSurface& surface, double floor_m, double cell_m2) {
+  return surface.num_given == 0 && static_cast<double>(surface.count) * cell_m2 < kMaxTop_m2 &&
+         surface.mean_z_m() - floor_m > kMinTop_m;
 }
 
 /// Gives cells without ground the height of a drop there, or that of the nearest ground.
@@ -308,6 +353,13 @@ GroundSurface find_ground(const Mesh& mesh, const Mesh& given, const GridGeometr
   if (chosen < 0) chosen = surface_by_rule(surfaces, cell_m2);
   GroundSurface ground;
   ground.height_m = Grid<float>(grid);
+  const std::optional<double> floor_m = start ? std::nullopt : given_floor_m(samples, grid);
+  if (floor_m && (chosen < 0 || is_top_of_object(surfaces[static_cast<std::size_t>(chosen)], *floor_m, cell_m2))) {
+    ground.is_found = true;
+    ground.is_ground.assign(grid.size(), 1);
+    std::ranges::fill(ground.height_m.values(), static_cast<float>(*floor_m));
+    return ground;
+  }
   if (chosen < 0) {
     double lowest_m = std::numeric_limits<double>::infinity();
     for (const Eigen::Vector3d& vertex : mesh.vertices_m) lowest_m = std::min(lowest_m, vertex.z());

@@ -67,7 +67,8 @@ void write_mission(const ImportedSite& site, const std::filesystem::path& folder
   io::save_text(
       folder / "scenarios" / "patrol.yaml",
       fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
-                  "mission: routes/patrol.json\n{}stack:\n  mission_type: gas  # stations of the mission file\n{}",
+                  "mission: routes/patrol.json\n{}stack:\n  mission_type: gas  # stations of the mission file\n{}"
+                  "expect:\n  mission.completed: true\n",
                   site.route->stations.size(), io::on_one_line(site.source), yaml_text(site.name),
                   yaml_text(site.robot), site.scenario_keys, site.stack_keys));
 }

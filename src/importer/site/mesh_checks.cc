@@ -10,6 +10,7 @@
 #include "core/letter_case.h"
 #include "importer/mesh_text.h"
 #include "io/files/atomic_file.h"
+#include "io/files/xml_problem.h"
 
 namespace patrol::importer {
 namespace {
@@ -42,7 +43,7 @@ void check_integers(const std::filesystem::path& file, const tinyxml2::XMLElemen
 void check_collada(const std::filesystem::path& file) {
   tinyxml2::XMLDocument document;
   if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
-    throw input_error(file.string(), document.ErrorLineNum(), fmt::format("not XML: {}", document.ErrorName()));
+    throw input_error(file.string(), document.ErrorLineNum(), "not XML: " + io::xml_problem(document));
   check_integers(file, *document.RootElement());
 }
 
@@ -65,7 +66,8 @@ void check_faces(const std::filesystem::path& file, const aiScene& scene) {
       if (face.mNumIndices == 0) refuse_mesh(file, fmt::format("face {} has no vertices", k));
       for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
         if (face.mIndices[corner] >= mesh.mNumVertices)
-          refuse_mesh(file, fmt::format("face {} has vertex {} of {}", k, face.mIndices[corner], mesh.mNumVertices));
+          refuse_mesh(file, fmt::format("face {} has vertex {} of {}: the file is damaged or ends too early", k,
+                                        face.mIndices[corner], mesh.mNumVertices));
       }
     }
     const bool is_marked = (mesh.mPrimitiveTypes & aiPrimitiveType_POLYGON) != 0;

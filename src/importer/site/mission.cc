@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "core/text.h"
 #include "importer/site/free_space.h"
 #include "importer/site/site_import.h"
 #include "importer/site/site_plan.h"
@@ -78,6 +79,23 @@ Pose2 start_at_first(const std::vector<io::TourStation>& rows) {
   return {first.x, first.y, yaw};
 }
 
+/// Reports stations to which the robot does not fit through the passages of the floor plan.
+void add_passage_row(const MissionOptions& options, const std::vector<io::TourStation>& rows, const Pose2& start,
+                     ImportedSite& site) {
+  const FreeSpace passable(*site.map, options.half_width_m, start.position());
+  std::vector<std::string> behind;
+  for (const io::TourStation& row : rows) {
+    if (!passable.contains({row.x, row.y})) behind.push_back(row.name);
+  }
+  if (behind.empty()) return;
+  site.assumptions.push_back(
+      {"passages",
+       fmt::format("{} of {} stations are behind passages narrower than {:.2f} m, the width of "
+                   "the robot: {}",
+                   behind.size(), rows.size(), 2.0 * options.half_width_m, patrol::join(behind, ", ")),
+       "--robot, --stations"});
+}
+
 void add_table_mission(const MissionOptions& options, ImportedSite& site) {
   const std::vector<io::TourStation> rows = io::load_tour_stations(options.stations);
   const Pose2 start = options.start ? *options.start : start_at_first(rows);
@@ -98,6 +116,7 @@ void add_table_mission(const MissionOptions& options, ImportedSite& site) {
     if (!connected.contains(p))
       throw station_error(options, row, "not connected to the start by free ground of the floor plan");
   }
+  add_passage_row(options, rows, start, site);
   if (!options.start)
     site.assumptions.push_back(
         {"start",

@@ -16,6 +16,7 @@
 #include "importer/site/mjcf_options.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
+#include "io/files/xml_problem.h"
 
 namespace patrol::importer {
 namespace {
@@ -76,8 +77,7 @@ class MjcfCopy {
   static void parse(const std::filesystem::path& file, tinyxml2::XMLDocument& document) {
     const std::string text = io::load_text(file);
     if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
-      throw InputError(fmt::format("{}:{}: not XML: {}", file.string(), document.ErrorLineNum(),
-                                   io::on_one_line(document.ErrorName())));
+      throw input_error(file.string(), document.ErrorLineNum(), "not XML: " + io::xml_problem(document));
   }
 
   void use_options_of_sites(const std::filesystem::path& file, XMLElement& root) {

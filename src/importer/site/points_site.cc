@@ -233,6 +233,27 @@ void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size
     site.assumptions.push_back({"invalid points", fmt::format("{} points are not finite: left out", num_dropped), ""});
 }
 
+/// Refuses coordinates whose floats of 32 bits are too coarse for surfaces.
+void check_precision(const io::RelativePoints& cloud, const std::string& location, double unit_m) {
+  constexpr double kMaxStep_m = 0.02;
+  const double step_m = unit_m * cloud.step;
+  if (step_m <= kMaxStep_m) return;
+  throw InputError(
+      fmt::format("{}: coordinates up to {:.3g} m in single precision are up to {:.2g} m apart: must be double "
+                  "precision, or relative to an origin near the site",
+                  location, unit_m * cloud.origin.cwiseAbs().maxCoeff(), step_m));
+}
+
+/// Refuses a cloud with a few points on surfaces.
+void check_points_on_surfaces(const io::RelativePoints& cloud, const CloudPatches& found, const std::string& location) {
+  constexpr std::size_t kMinPoints = 100;
+  const std::size_t count = cloud.points.size() - found.num_outliers;
+  if (count < kMinPoints) {
+    throw InputError(fmt::format("{}: {} of {} points are on surfaces: at least {} are needed", location, count,
+                                 cloud.points.size(), kMinPoints));
+  }
+}
+
 }  // namespace
 
 ImportedSite read_scans_site(const SiteImportOptions& options) {
@@ -310,6 +331,7 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
 
 ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, const SiteImportOptions& options) {
   const auto progress = progress_of(options);
+  check_precision(cloud, error_location(options, source), unit_of_points(options));
   progress("find surfaces", 0.3);
   ImportedSite site{.name = options.name, .source = source};
   transform(cloud.points, unit_of_points(options) * upright(options));
@@ -323,12 +345,16 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
                                     : std::clamp(scale.factor * intensity, 0.0f, 1.0f);
       },
       error_location(options, source));
+  check_points_on_surfaces(cloud, found, error_location(options, source));
   add_frame_rows(site, cloud.origin, cloud.num_dropped, options);
   site.assumptions.push_back(
       {"points",
        fmt::format("{}; smallest cell {:g} m, noise {:.4f} m", cloud.points.size(), found.cell_m, found.noise_m), ""});
   site.assumptions.push_back(
-      {"outliers", fmt::format("{} points without a surface are removed", found.num_outliers), ""});
+      {"outliers",
+       fmt::format("{} points without a surface are removed{}", found.num_outliers,
+                   2 * found.num_outliers > cloud.points.size() ? ": more than half of the cloud" : ""),
+       ""});
   site.assumptions.push_back(
       {"moving objects", "remain: the file has no scanner positions, so that no point can be looked through", ""});
   site.assumptions.push_back(

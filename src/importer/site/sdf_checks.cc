@@ -138,9 +138,9 @@ class ElementChecker {
   std::vector<Assumption> rows() const {
     std::vector<Assumption> rows;
     for (const auto& [key, found] : found_) {
-      const std::string more = found.count > 1  ? fmt::format(" ({}, the first in line {})", found.count, found.line)
-                               : found.line > 0 ? fmt::format(" (line {})", found.line)
-                                                : std::string();
+      const std::string more = found.count > 1 ? fmt::format(" ({}, the first in {})", found.count, found.location)
+                               : !found.location.empty() ? fmt::format(" ({})", found.location)
+                                                         : std::string();
       rows.push_back({"<" + key.first + ">", key.second + more, "the file"});
     }
     return rows;
@@ -149,7 +149,7 @@ class ElementChecker {
  private:
   struct Found {
     int count = 0;
-    int line = 0;
+    std::string location = {};  ///< of the first
   };
 
   static bool is_shape(const sdf::ElementPtr& element) {
@@ -164,7 +164,7 @@ class ElementChecker {
 
   void count(const sdf::ElementPtr& element, const std::string& text) {
     Found& found = found_[{element->GetName(), text}];
-    if (found.count++ == 0) found.line = element->LineNumber().value_or(0);
+    if (found.count++ == 0) found.location = world_.short_location_of(element);
   }
 
   void check_gravity(const sdf::ElementPtr& element) const {

@@ -13,6 +13,7 @@
 #include "importer/site/sdf_source.h"
 #include "importer/source_reader.h"
 #include "io/files/one_line.h"
+#include "io/files/xml_problem.h"
 
 namespace patrol::importer {
 namespace {
@@ -84,7 +85,7 @@ std::filesystem::path sdf_file_of_model(const std::filesystem::path& folder) {
   if (!std::filesystem::is_regular_file(config, error)) throw InputError(config.string() + ": file not found");
   tinyxml2::XMLDocument document;
   if (document.LoadFile(config.c_str()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
-    throw input_error(config.string(), document.ErrorLineNum(), fmt::format("not XML: {}", document.ErrorName()));
+    throw input_error(config.string(), document.ErrorLineNum(), "not XML: " + io::xml_problem(document));
   std::string best;
   int best_version = -1;
   for (const auto* sdf = document.RootElement()->FirstChildElement("sdf"); sdf != nullptr;

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
+#include "io/files/xml_problem.h"
 
 namespace patrol::importer {
 namespace {
@@ -109,8 +110,7 @@ void SdfSource::fail(const tinyxml2::XMLElement& element, const std::string& wha
 SdfSource::SdfSource(const std::filesystem::path& file, SdfContent content) : file_(file) {
   const std::string text = io::load_text(file);
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document_.RootElement() == nullptr)
-    throw input_error(file.string(), document_.ErrorLineNum(),
-                      fmt::format("not XML: {}", io::on_one_line(document_.ErrorName())));
+    throw input_error(file.string(), document_.ErrorLineNum(), "not XML: " + io::xml_problem(document_));
   const tinyxml2::XMLElement& root = *document_.RootElement();
   if (std::string_view(root.Name()) != "sdf") fail(root, "must be <sdf>");
   const char* version = root.Attribute("version");

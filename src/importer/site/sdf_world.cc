@@ -138,6 +138,14 @@ std::string SdfWorld::place_of(const std::filesystem::path& path, std::optional<
   return file.string() + (line ? fmt::format(":{}", *line) : "");
 }
 
+std::string SdfWorld::short_location_of(const sdf::ElementPtr& element) const {
+  const std::optional<int> line = element->LineNumber();
+  const SdfFiles::File* file = files_.find_copy(element->FilePath());
+  if (file == nullptr || file == &files_.world()) return line ? fmt::format("line {}", *line) : std::string();
+  const std::filesystem::path& path = file->path;
+  return (path.parent_path().filename() / path.filename()).string() + (line ? fmt::format(":{}", *line) : "");
+}
+
 std::filesystem::path SdfWorld::resolve(const std::string& uri, const sdf::ElementPtr& element) const {
   if (is_of_network(uri)) fail(element, uri + ": files of a network are not supported");
   std::optional<std::filesystem::path> path;

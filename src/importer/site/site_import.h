@@ -22,6 +22,7 @@ struct MissionOptions {
   std::optional<Pose2> start = {};      ///< in site; none: by rule
   bool start_is_recorded = false;       ///< the start is that of a recorded path, which needs no clearance
   double clearance_m = 0.5;             ///< distance of start and stations from walls and unknown space
+  double half_width_m = 0.3;            ///< of the robot, which does not fit through narrower passages
   std::string robot = "wheeled";        ///< robot of the scenario
 };
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "importer/site/enclosing_solid.h"
 #include "sim/geom_box.h"
 #include "sim/lidar_scene.h"
 #include "sim/mujoco.h"
@@ -88,6 +89,9 @@ class GroundFlood {
   }
 
   std::int32_t last_region() const { return num_regions_; }
+
+  /// Height of the ground in a flooded cell.
+  double ground_m(Cell cell) const { return double{ground_m_.at(cell)}; }
 
   /// Plan of a region: its cells are free. Cells beside it that hold an obstacle are occupied, and those of its cells
   /// that hold a surface thinner than a cell, which the flood reached from both sides.
@@ -182,6 +186,15 @@ class GroundFlood {
   std::int32_t num_regions_ = 0;
 };
 
+/// `point_m`: above the ground at the start.
+void refuse_start_in_solid(const mjModel& site, const Eigen::Vector3d& point_m) {
+  const sim::DataPtr data = sim::make_data(site);
+  mj_kinematics(&site, data.get());
+  if (const std::optional<std::string> solid = enclosing_solid(site, *data, point_m))
+    throw InputError(fmt::format("start ({:.2f}, {:.2f}): inside of {}", point_m.x(), point_m.y(),
+                                 solid->empty() ? "an obstacle" : *solid));
+}
+
 }  // namespace
 
 OccupancyGrid plan_of(const mjModel& site, const std::optional<Eigen::Vector2d>& p_start_m,
@@ -191,8 +204,10 @@ OccupancyGrid plan_of(const mjModel& site, const std::optional<Eigen::Vector2d>&
   if (p_start_m) points_m.push_back(*p_start_m);
   GroundFlood flood(site, points_m, settings);
   if (p_start_m) {
-    if (flood.flood_from(flood.grid().cell_at(*p_start_m)) == 0)
+    const Cell start = flood.grid().cell_at(*p_start_m);
+    if (flood.flood_from(start) == 0)
       throw InputError(fmt::format("start ({:.2f}, {:.2f}): no ground", p_start_m->x(), p_start_m->y()));
+    refuse_start_in_solid(site, {p_start_m->x(), p_start_m->y(), flood.ground_m(start) + settings.max_step_m});
     return flood.plan_of_region(flood.last_region());
   }
   const int spacing = std::max(1, static_cast<int>(kStartSpacing_m / flood.grid().resolution_m));

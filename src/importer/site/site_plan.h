@@ -25,7 +25,7 @@ struct SitePlanSettings {
 /// surface up to `height_m` above it are occupied, also of walls that are thinner than a cell; all others are unknown.
 /// The ground is the lowest surface that faces up with the height above it; it is flooded from the cell at `p_start_m`,
 /// or from the start that floods the largest region. The plan contains the start and `stations_m`, points in site.
-/// Throws InputError if there is no ground.
+/// Throws InputError if there is no ground, or if the start is inside of a solid.
 OccupancyGrid plan_of(const mjModel& site, const std::optional<Eigen::Vector2d>& p_start_m,
                       const std::vector<Eigen::Vector2d>& stations_m = {}, const SitePlanSettings& settings = {});
 

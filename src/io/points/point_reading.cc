@@ -1,5 +1,7 @@
 #include "io/points/point_reading.h"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -24,6 +26,8 @@ RelativePoints load_points(const std::filesystem::path& file, const std::optiona
   }
   relative.origin = shift.origin.value_or(Eigen::Vector3d::Zero());
   relative.num_dropped = shift.num_dropped;
+  if (shift.is_single_precision)
+    relative.step = static_cast<double>(std::numeric_limits<float>::epsilon()) * relative.origin.cwiseAbs().maxCoeff();
   return relative;
 }
 

@@ -18,6 +18,7 @@ struct RelativePoints {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< in the frame of the file
   std::vector<ScannerPoint> points;                  ///< position minus `origin`; all values are finite
   std::size_t num_dropped = 0;                       ///< number of points of the file that are not finite
+  double step = 0.0;  ///< distance of neighboring coordinates at `origin`, if the file has floats of 32 bits; else 0
 };
 
 /// Reads a PLY or PCD file, by its extension, and drops points that are not finite. `origin`: in the frame of the file;

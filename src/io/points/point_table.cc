@@ -137,6 +137,7 @@ std::vector<ScannerPoint> PointTable::read_binary(std::endian order) {
     throw InputError(
         fmt::format("{}: ends too early for {} points of {} bytes", text_.file(), num_points_, row_bytes_));
   }
+  if (shift_ != nullptr) shift_->is_single_precision = sources_[0]->type == NumberType::kFloat32;
   std::vector<ScannerPoint> points;
   points.reserve(num_points_);
   for (std::size_t i = 0; i < num_points_; ++i) {

@@ -62,6 +62,7 @@ struct PointShift {
   std::optional<Eigen::Vector3d> origin;  ///< none: set by the first finite point (io/points/point_reading.h)
   std::size_t num_dropped = 0;            ///< number of points that are not finite, which are left out
   double unit_m = 1.0;                    ///< meters per unit of the file
+  bool is_single_precision = false;       ///< the file has floats of 32 bits
 };
 
 /// Returns zero for a position within 10 km of zero on each axis, else the position rounded to 100 m; both in units of

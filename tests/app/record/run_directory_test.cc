@@ -99,5 +99,14 @@ TEST(RunDirectory, OpensOnlyWhereALogLies) {
   EXPECT_EQ(open_run_directory(folder.path()).root, folder.path());
 }
 
+TEST(LogOf, IsThatOfARunDirectoryOrThePathItself) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(log_of(folder.path()), folder.path()) << "a folder without a log";
+  test::write_bytes(folder / "log.mcap", "log");
+  EXPECT_EQ(log_of(folder.path()), folder / "log.mcap");
+  EXPECT_EQ(log_of(folder / "log.mcap"), folder / "log.mcap");
+  EXPECT_EQ(log_of("none.clf"), "none.clf");
+}
+
 }  // namespace
 }  // namespace patrol::app::run_directory_test

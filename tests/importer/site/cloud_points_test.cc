@@ -100,6 +100,24 @@ TEST(CloudSite, CoordinatesOfMillionsOfMetersAreShifted) {
   EXPECT_GT(area_in(site, floor, false), 40.0);
 }
 
+TEST(CloudSite, CoordinatesOfMillionsOfMetersInSinglePrecisionAreRefused) {
+  const test::TemporaryFolder folder;
+  std::vector<ScannerPoint> points = room_cloud();
+  for (ScannerPoint& point : points) point.y += 5'411'890.5f;
+  io::save_pcd(folder / "room.pcd", points);
+  EXPECT_THAT([&] { import_site({.file = folder / "room.pcd", .name = "room"}); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr(
+                  "room.pcd: coordinates up to 5.41e+06 m in single precision are up to 0.65 m apart")));
+}
+
+TEST(CloudSite, ACloudOfAFewPointsIsRefused) {
+  std::vector<ScannerPoint> points;
+  for (int i = 0; i < 64; ++i) points.push_back({0.3f * float(i % 8), 0.3f * float(i / 8), 0.0f, 0.0f});
+  for (int i = 0; i < 9; ++i) points.push_back({3.0f * float(i), 20.0f + float(i * i), 1.0f + float(i), 0.0f});
+  EXPECT_THAT(complaint_about("few.ply", ply_text(points, {0, 0, 0})),
+              testing::MatchesRegex(".*few.ply: 6[0-9] of 73 points are on surfaces: at least 100 are needed"));
+}
+
 TEST(CloudSite, PointsThatAreNotFiniteAreLeftOut) {
   const test::TemporaryFolder folder;
   std::vector<ScannerPoint> points = room_cloud();

@@ -316,6 +316,36 @@ TEST(ContactGeometry, GivenSurfacesAreGroundWithoutAnotherOne) {
   EXPECT_THAT(contact.rows.front().text, HasSubstr("contact of their own"));
 }
 
+TEST(ContactGeometry, AnObjectOnAGivenFloorIsNoGround) {
+  Mesh given;
+  add_quad(given, {-20, -20, 0}, {20, -20, 0}, {20, 20, 0}, {-20, 20, 0});
+  const auto first_row = [&given](const Eigen::Vector3d& lower, const Eigen::Vector3d& upper) {
+    Mesh mesh;
+    add_box(mesh, lower, upper);
+    return contact_geometry(mesh, given, {}).rows.front().text;
+  };
+  const char* floor = "contact of their own";
+  EXPECT_THAT(first_row({1, 1, 0.02}, {1.5, 1.5, 0.5}), HasSubstr(floor)) << "chair";
+  EXPECT_THAT(first_row({1, 1, 1.2}, {1.05, 1.6, 1.6}), HasSubstr(floor)) << "sign";
+  EXPECT_THAT(first_row({1, 1, 0.02}, {2.5, 2.5, 1}), HasSubstr(floor)) << "crate";
+  EXPECT_THAT(first_row({1, 1, 0.02}, {7, 3.4, 2.6}), HasSubstr(floor)) << "container";
+  EXPECT_THAT(first_row({1, 1, -0.1}, {9, 7, 0.25}), HasSubstr("48 m2 of walkable surface")) << "slab of a house";
+}
+
+TEST(ContactGeometry, TheGroundOfABuildingWhoseTrianglesFaceInwardIsTheTopOfItsSlab) {
+  Mesh mesh;
+  add_box(mesh, {-5, -4, -0.25}, {5, 4, 0}, true);
+  add_box(mesh, {-5, -4, 0}, {-4.8, 4, 2.5}, true);
+  add_box(mesh, {4.8, -4, 0}, {5, 4, 2.5}, true);
+  add_box(mesh, {-5, -4, 2.5}, {5, 4, 2.75}, true);
+  for (const std::optional<Eigen::Vector2d>& start :
+       {std::optional<Eigen::Vector2d>(), std::optional(Eigen::Vector2d(-3.0, 0.0))}) {
+    const ContactGeometry contact = contact_geometry(mesh, {}, {.start = start});
+    EXPECT_NEAR(ground_of(contact).T_site_shape.position.z(), 0.0, 1e-6);
+    EXPECT_THAT(contact.rows.front().text, HasSubstr("whose triangles face down"));
+  }
+}
+
 TEST(ContactGeometry, AFanOfSliversIsWholeGround) {
   Mesh mesh;  // disk of 20 m radius: 4,000 triangles across thousands of cells
   constexpr int kNum = 4000;

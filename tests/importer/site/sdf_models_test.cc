@@ -132,11 +132,18 @@ TEST(SdfSite, ErrorsOfIncludedModelsHaveTheirFileAndLine) {
     EXPECT_EQ(error_of("\n" + link(visual("<box><size>1 x 1</size></box>"))),
               file + "<size>: \"1 x 1\" is not a valid value");
     EXPECT_EQ(error_of("\n" + link(visual("<torus/>"))), file + "<torus>: is not a geometry of the format");
-    EXPECT_EQ(error_of("\n<link>"), file + "not XML: XML_ERROR_MISMATCHED_ELEMENT");
+    EXPECT_EQ(error_of("\n<link>"), file + "not XML: mismatched element: a tag is not closed");
     EXPECT_EQ(error_of(link("") + "\n" + link("")), file + "link with name[link] already exists.");
     EXPECT_EQ(error_of(link("") + "\n<frame name='f' attached_to='g'/><frame name='g' attached_to='f'/>"),
               file + "<frame>: \"f\": attached_to: cycle of frames: must lead to a link, a model or the world");
   }
+}
+
+TEST(SdfSite, RowsOfIncludedModelsHaveTheirFileAndLine) {
+  SiteFileImport import("a.sdf", world(include("crate")));
+  write_model(import, "crate", link(visual(kBox)) + "\n<plugin name=\"p\" filename=\"p.so\"/>");
+  import.read();
+  EXPECT_EQ(import.assumption("<plugin>"), "ignored (crate/model.sdf:3)");
 }
 
 TEST(SdfSite, AWorldOfVersion111WithAModelOfVersion110AndARelativeMeshIsImported) {

@@ -93,7 +93,9 @@ TEST_F(PlanImport, RandomStationsAreAMissionInTheFreeSpaceOfThePlan) {
     EXPECT_LE(std::abs(station.T_route_body.x), 2.2);
     EXPECT_LE(std::abs(station.T_route_body.y), 1.2);
   }
-  EXPECT_THAT(test::read_bytes(folder_ / "worlds/room/scenarios/patrol.yaml"), HasSubstr("robot: tracked\n"));
+  const std::string scenario = test::read_bytes(folder_ / "worlds/room/scenarios/patrol.yaml");
+  EXPECT_THAT(scenario, HasSubstr("robot: tracked\n"));
+  EXPECT_THAT(scenario, HasSubstr("expect:\n  mission.completed: true\n"));
 }
 
 TEST_F(PlanImport, ATableOfStationsIsAMissionThatEndsAtTheLastOneAndFacesAwayFromTheOneBefore) {
@@ -133,6 +135,23 @@ TEST_F(PlanImport, StationsOutsideInAWallWithTooLittleClearanceOrBehindAWallAreR
   expect_refusal("valve,-2.5,0", "-2.5, 0): not on the free ground");
   expect_refusal("valve,1,1.3", "1, 1.3): 0.30 m from walls or unknown space: the robot needs at least 0.50 m");
   expect_refusal("valve,-1.5,0", "-1.5, 0): not connected to the start");
+}
+
+TEST_F(PlanImport, StationsBehindAPassageThatIsTooNarrowForTheRobotAreReported) {
+  OccupancyGrid plan = room_plan();
+  for (int row = 9; row <= 40; ++row) plan.at({20, row}) = row >= 20 && row < 26 ? 0 : 100;  // door of 0.6 m
+  io::save_map(folder_ / "room.yaml", plan);
+  test::write_bytes(folder_ / "s.csv", "name,x,y\npump,1,0\nvalve,-1.5,0\n");
+  const auto row_with = [&](double half_width_m) {
+    const ImportedSite site =
+        import_site(options({.stations = folder_ / "s.csv", .clearance_m = 0.4, .half_width_m = half_width_m}));
+    for (const Assumption& row : site.assumptions) {
+      if (row.subject == "passages") return row.text;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(row_with(0.35), "1 of 2 stations are behind passages narrower than 0.70 m, the width of the robot: valve");
+  EXPECT_EQ(row_with(0.2), "");
 }
 
 TEST_F(PlanImport, AStartOutsideOrInAWallIsRefusedWithATableAndWithRandomStations) {

@@ -1,5 +1,6 @@
 #include "importer/site/site_plan.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -77,6 +78,16 @@ TEST(SitePlan, AStartWithoutGroundAndASiteWithoutGroundAreRefused) {
   EXPECT_THROW(plan_of(*site, Eigen::Vector2d(50.0, 0.0)), InputError);
   const sim::ModelPtr nothing = sim::compile(*sim::parse_spec("<mujoco/>"), "nothing");
   EXPECT_THROW(plan_of(*nothing, std::nullopt), InputError);
+}
+
+TEST(SitePlan, AStartInsideOfASolidIsRefusedByItsName) {
+  const sim::ModelPtr site = sim::compile(
+      *sim::parse_spec("<mujoco><worldbody><geom type=\"plane\" size=\"0 0 1\"/><geom name=\"tank\" type=\"box\" "
+                       "size=\"2 2 1.1\" pos=\"6 0 1.1\"/></worldbody></mujoco>"),
+      "tank");
+  EXPECT_THAT([&] { plan_of(*site, Eigen::Vector2d(6.5, 0.5)); },
+              ::testing::ThrowsMessage<InputError>("start (6.50, 0.50): inside of tank"));
+  EXPECT_EQ(value_at(plan_of(*site, Eigen::Vector2d(3.5, 0.0)), 3.5, 1.0), 0);
 }
 
 TEST(SitePlan, OnAnEndlessPlaneThePlanContainsStartAndStationsWithAMarginAndNotThoseFarOutside) {

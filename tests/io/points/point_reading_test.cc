@@ -30,6 +30,17 @@ TEST(PointReading, CoordinatesOfMillionsOfMetersKeepMillimeters) {
   EXPECT_NEAR(relative.points[2].z, 13.75f, 1e-5f);
 }
 
+TEST(PointReading, FloatsOf32BitsHaveAStepAtTheirOrigin) {
+  const TemporaryFolder folder;
+  const std::vector<ScannerPoint> far = {{4'194'304.0f, 0.0f, 0.0f, 0.0f}}, near = {{4'194.0f, 0.0f, 0.0f, 0.0f}};
+  save_pcd(folder / "far.pcd", far);
+  save_pcd(folder / "near.pcd", near);
+  EXPECT_NEAR(load_points(folder / "far.pcd").step, 0.5, 1e-3);
+  EXPECT_EQ(load_points(folder / "near.pcd").step, 0.0);
+  write_bytes(folder / "c.ply", kHeader + "end_header\n5411890.123 1 2\n0 0 0\n0 0 1\n");
+  EXPECT_EQ(load_points(folder / "c.ply").step, 0.0);
+}
+
 TEST(PointReading, NearCoordinatesKeepTheirOrigin) {
   const TemporaryFolder folder;
   write_bytes(folder / "c.ply", kHeader + "end_header\n9999 1 2\n0 0 0\n0 0 1\n");
