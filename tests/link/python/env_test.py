@@ -144,6 +144,18 @@ class Env(unittest.TestCase):
         with self.assertRaises(gymnasium.error.ClosedEnvironmentError):
             env.reset()
 
+    def test_a_learner_may_pause_for_a_day_and_the_reason_of_a_shorter_limit_is_named(self):
+        with tempfile.TemporaryDirectory() as out:
+            env = self.make(episode_s=3.0, out=out)
+            env.reset(seed=1)
+            self.assertIn("\n  timeout_s: 86400\n", (pathlib.Path(out) / "episode_1/scenario.yaml").read_text())
+        env = self.make(episode_s=3.0, settings=["stack.timeout_s=5"])
+        env.reset(seed=1)
+        env._process.wait()  # the pause
+        with self.assertRaisesRegex(LinkError, r"the stack was silent at 0\.200 s: no answer within 5 s"):
+            env.step(np.zeros(3))
+        self.assertAlmostEqual(env.reset(seed=1)[1]["time"], 0.2)
+
     def test_environments_in_processes(self):
         envs = gymnasium.vector.AsyncVectorEnv([lambda: PatrolEnv("street/short", patrol=PATROL, episode_s=1.0)] * 2)
         self.addCleanup(envs.close)

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import tempfile
 import time
+import xml.etree.ElementTree
 
 import gymnasium
 import numpy as np
@@ -23,6 +24,7 @@ from patrol_client.client import Client, LinkError
 _IMU_RANGE = np.array([34.9] * 3 + [157.0] * 3, np.float32)
 
 
+_PAUSE_S = 86400  # limit of the time between two steps, the largest value of stack.timeout_s
 _TIME_TO_END_S = 10.0  # of a program whose run has failed
 _NO_ERRORS = ("patrol: waiting for ", "patrol: warning: ")  # beginnings of other lines of the program
 
@@ -43,8 +45,10 @@ class PatrolEnv(gymnasium.Env):
     keeps the run directories, one for each episode; the numbers of `episode_1`, `episode_2`, ... continue after those in the
     folder, also if several environments use it. None: none is kept.
 
-    Raises LinkError with the last line of the program if a run cannot start or ends with an error, and ValueError for an
-    action of another shape or with a number that is not finite.
+    The program waits for the next step for a day: a learner may pause. `stack.timeout_s` in `settings` is another limit, s.
+
+    Raises LinkError with the reason of the program if a run cannot start or ends with an error, and ValueError for an action
+    of another shape or with a number that is not finite.
     """
 
     metadata = {"render_modes": []}
@@ -52,7 +56,7 @@ class PatrolEnv(gymnasium.Env):
     def __init__(self, scenario, *, patrol="patrol", turn_period=0.1, episode_s=None, settings=(), reward=None, out=None,
                  render_mode=None):
         self.render_mode = render_mode
-        self._command = [patrol, "run", str(scenario)]
+        self._command = [patrol, "run", str(scenario), "--set", f"stack.timeout_s={_PAUSE_S}"]
         for setting in settings:
             self._command += ["--set", setting]
         if episode_s is not None:
@@ -149,9 +153,9 @@ class PatrolEnv(gymnasium.Env):
             self._scan = self._imu = None
             self._next_turn()
             while self._scan is None or self._imu is None:  # until the sensors have delivered
+                self._client.done(self._turn)
                 if self._turn.is_last:
                     raise LinkError("the run ended before the first scan and IMU message")
-                self._client.done(self._turn)
                 self._next_turn()
         except LinkError as error:
             raise self._failure(error) from error
@@ -197,13 +201,22 @@ class PatrolEnv(gymnasium.Env):
         return metrics
 
     def _failure(self, error):
-        """Ends the run and returns its error with the last line that the program wrote."""
+        """Ends the run and returns its error with the reason of the program."""
         if self._client is not None:
             self._client.close()
         self._wait()
+        reason = self._reason()
         self._stop_run()
+        return LinkError(reason if str(error) in reason else f"{error}: {reason}" if reason else str(error))
+
+    def _reason(self):
+        """Returns why the run ended: the error in its verdict, or else the last line of the program; empty if unknown."""
+        if (self._directory / "metrics.json").exists():
+            error = xml.etree.ElementTree.parse(self._directory / "junit.xml").find(".//error")
+            if error is not None:
+                return error.get("message")
         lines = [line for line in self._log.read_text(errors="replace").split("\n") if line and not line.startswith(_NO_ERRORS)]
-        return LinkError(f"{error}: {lines[-1]}" if lines else str(error))
+        return lines[-1] if lines else ""
 
     def _wait(self):
         """Gives the program, whose connection is closed, time to write its run directory."""
