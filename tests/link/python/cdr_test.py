@@ -240,9 +240,10 @@ string[] none []
 
     def test_a_message_of_another_type_is_an_error(self):
         message = TYPE()
-        message.header = POINT()
-        with self.assertRaisesRegex(cdr.CdrError, "header: is a geometry_msgs/Point: must be a std_msgs/Header"):
-            message.encode()
+        for value, name in ((POINT(), "geometry_msgs/Point"), ("", "str"), (None, "NoneType")):
+            message.header = value
+            with self.assertRaisesRegex(cdr.CdrError, f"header: is a {name}: must be a std_msgs/Header"):
+                message.encode()
         with self.assertRaisesRegex(cdr.CdrError, "names: is a string"):
             TYPE(names="ab").encode()
 

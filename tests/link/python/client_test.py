@@ -151,6 +151,20 @@ class Connection(unittest.TestCase):
         simulator.thread.join(20)
         self.assertEqual([simulator.received.count(text) for text in (b"float64 first\n", b"float64 second\n")], [1, 1])
 
+    def test_a_message_of_another_type_than_that_of_its_topic_is_an_error(self):
+        simulator = self.simulator(Simulator.greet, Simulator.read, Simulator.turn, Simulator.read)
+        with Client(simulator.address) as client:
+            client.begin("test")
+            turn = client.next_turn()
+            client.declare("/b", "my_msgs/msg/Other", "float64 x\n")  # the same bytes as on /a
+            for message, name in ((turn.new("/a"), "my_msgs/Value"), (None, "NoneType"), ("text", "str")):
+                with self.assertRaisesRegex(cdr.CdrError, f"^/b: message is a {name}: must be a my_msgs/Other$"):
+                    turn.publish("/b", message)
+            for call in (lambda: turn.new("/nope"), lambda: turn.publish("/nope", turn.new("/a"))):
+                with self.assertRaisesRegex(KeyError, "/nope: unknown topic: must be one of Patrol or declared"):
+                    call()
+            client.done(turn)
+
     def test_messages_have_the_definition_of_their_channel(self):
         def send(simulator):
             simulator.send("/a", x=1.5)

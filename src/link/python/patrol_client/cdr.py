@@ -199,8 +199,8 @@ class _Field:
             self._write_text(writer, value)
         elif self.number:
             writer.number(*self.number, value)
-        elif value._type_name != self.type._type_name:
-            raise ValueError(f"is a {value._type_name}: must be a {self.type._type_name}")
+        elif name_of_type(value) != self.type._type_name:
+            raise ValueError(f"is a {name_of_type(value)}: must be a {self.type._type_name}")
         else:
             value._write(writer)
 
@@ -234,6 +234,11 @@ class _Field:
             return writer.numbers(self.number[1], value)
         for one in value:
             self._write_one(writer, one)
+
+
+def name_of_type(value):
+    """Returns the name of the type of a message, package/Type, or of the class of another value."""
+    return value._type_name if isinstance(value, RosMessage) else type(value).__name__
 
 
 class RosMessage:

@@ -166,6 +166,8 @@ class Client:
 
     def type_of(self, topic):
         """Returns the class of the messages on a topic. Raises KeyError if the topic is not known."""
+        if topic not in self._definitions:
+            raise KeyError(f"{topic}: unknown topic: must be one of Patrol or declared (Client.declare)")
         return self._class_of(self._definitions[topic])
 
     def declare(self, topic, type_name, definition):
@@ -203,7 +205,11 @@ class Client:
             messages.append(message)
 
     def publish(self, topic, now_ns, message):
-        """Publishes a message of the present turn, at `now_ns`. Raises cdr.CdrError if it does not fit its type."""
+        """Publishes a message of the present turn, at `now_ns`. Raises cdr.CdrError if it has not the type of the topic or
+        does not fit its type, and KeyError if the topic is not known."""
+        expected, found = self.type_of(topic)._type_name, cdr.name_of_type(message)
+        if found != expected:
+            raise cdr.CdrError(f"{topic}: message is a {found}: must be a {expected}")
         if topic not in self._sent_channels:
             self._send_channel(topic)
         records.Message(channel_id=self._sent_channels[topic], sequence=0, log_time=now_ns, publish_time=now_ns,
