@@ -7,6 +7,7 @@ usage: same_bytes_test.py PATROL SOURCE
 import concurrent.futures
 import os
 import pathlib
+import shutil
 import signal
 import socket
 import struct
@@ -88,6 +89,23 @@ def fork(client):
         os._exit(0)
 
 patrol_client.run(lambda turn: turn.publish_velocity(0.3), topics=["/scan"], turn_period=0.05, on_start=fork)
+"""
+
+# Answers in another way than in its first run, of which a file is left: from 1 s on, as its second argument says.
+CHANGES = """
+import pathlib
+import sys
+import patrol_client
+
+has_run = pathlib.Path(sys.argv[1]).exists()
+pathlib.Path(sys.argv[1]).touch()
+
+def on_turn(turn):
+    turn.publish_velocity(0.3)
+    if has_run and turn.now_ns >= 10**9:
+        exec(sys.argv[2])
+
+patrol_client.run(on_turn, topics=["/scan"], turn_period=0.05)
 """
 
 STRAIGHT = """
@@ -227,6 +245,23 @@ class SameBytes(unittest.TestCase):
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertRegex(done.stdout, r"simulator: byte-identical\n"
                                       r"stack: differs: /cmd_vel at 1\.300000000 s: twist\.linear\.x is 0\.3\d+, was 0\.3\d+")
+
+    def test_the_first_turn_in_which_a_stack_asks_for_another_turn_or_end_is_named(self):
+        for change, difference in (("turn.next_turn_ns = turn.now_ns + 20_000_000", "next_turn.nanosec is 20000000, was 50000000"),
+                                   ("turn.mission_is_over = True", "mission_is_over is true, was false")):
+            stack = write_stack(self.path, "changes.py", CHANGES) + f" {self.path / 'has_run'} '{change}'"
+            (self.path / "has_run").unlink(missing_ok=True)
+            done = verify(self.run_to("changes", stack, time_limit_s=1.5), stack)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertEqual(done.stdout, "simulator: byte-identical\n"
+                                          f"stack: differs: /stack/turns at 1.000000000 s: {difference}\n")
+
+    def test_the_end_of_the_output_of_a_stack_that_fails_is_printed(self):
+        stack = write_stack(self.path, "changes.py", CHANGES) + f" {self.path / 'has_run'} 'print(1 / 0)'"
+        done = verify(self.run_to("changes", stack, time_limit_s=1.5), stack)
+        self.assertEqual((done.returncode, done.stdout), (3, "simulator: byte-identical\n"), done.stderr)
+        self.assertRegex(done.stderr, r"verify: end of the output of the stack:\nTraceback .*(.*\n)+ZeroDivisionError: division by zero\n"
+                                      r"patrol: the stack failed at 1\.000 s: ZeroDivisionError: division by zero; its output: above\n\Z")
 
     def test_measured_computing_time_is_in_the_log_and_repeated_from_it(self):
         # A tenth of this computer's speed: the delays are longer than a tick, and differ from run to run.

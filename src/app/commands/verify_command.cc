@@ -1,3 +1,4 @@
+#include <deque>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -43,6 +44,20 @@ void check_stack(const std::string& command) {
 void throw_if_ended_early(const RunOutcome& outcome) {
   if (outcome.end == RunEnd::kInterrupted) throw std::runtime_error("interrupted; nothing compared");
   if (!outcome.stack_failure.empty()) throw std::runtime_error(outcome.stack_failure);
+}
+
+/// Prints the last lines of the output of a stack that has failed. Its file is in a temporary folder.
+void print_last_lines(const std::filesystem::path& output) {
+  constexpr std::size_t kMaxLines = 20;
+  std::ifstream stream(output);
+  std::deque<std::string> lines;
+  for (std::string line; std::getline(stream, line);) {
+    lines.push_back(line);
+    if (lines.size() > kMaxLines) lines.pop_front();
+  }
+  if (lines.empty()) return;
+  fmt::print(stderr, "verify: end of the output of the stack:\n");
+  for (const std::string& line : lines) fmt::print(stderr, "{}\n", line);
 }
 
 /// Prints the result of one half of the verification. Returns whether it is reproduced.
@@ -104,14 +119,22 @@ ExitCode verify_command(const VerifyOptions& options) {
   }
   if (options.stack) scenario.stack.command = *options.stack;
   ProgressLine observer("verify stack", scenario.time_limit_s);
-  const std::unique_ptr<StackPort> stack = make_stack_port(
+  const std::filesystem::path output = again.path() / "stack.log";
+  std::unique_ptr<StackPort> stack = make_stack_port(
       scenario, files,
-      {.scenario = name, .data_root = data_root, .output = again.path() / "stack.log", .is_interrupted = [&] {
+      {.scenario = name, .data_root = data_root, .output = output, .output_name = "above", .is_interrupted = [&] {
          return observer.is_interrupted();
        }});
   const std::filesystem::path log = again.path() / "stack.mcap";
-  throw_if_ended_early(feed_loop(directory.log(), files, simulator.tick(), *stack, log, observer, turns));
-  is_same = report("stack", io::first_difference(directory.log(), log, io::is_stack_output)) && is_same;
+  const RunOutcome outcome = feed_loop(directory.log(), files, simulator.tick(), *stack, log, observer, turns);
+  const bool has_turns = !turns.empty() && stack->records_turns();
+  stack.reset();  // writes the rest of the output
+  if (!outcome.stack_failure.empty()) print_last_lines(output);
+  throw_if_ended_early(outcome);
+  const auto is_answer = [&](const std::string& topic) {
+    return io::is_stack_output(topic) || (has_turns && topic == io::kTopic<StackTurnRecord>);
+  };
+  is_same = report("stack", io::first_difference(directory.log(), log, is_answer)) && is_same;
   return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 

@@ -250,7 +250,8 @@ void ExternalStack::fail(const LinkError& error, const std::string& when) {
       while (process_->is_running() && std::chrono::steady_clock::now() < deadline) ::usleep(1000);
       if (const std::string end = process_->end_text(); !end.empty()) text = fmt::format("the stack {} {}", end, when);
     }
-    text += fmt::format("; its output: {}", connection_.output.filename().string());
+    const std::string& name = connection_.output_name;
+    text += fmt::format("; its output: {}", name.empty() ? connection_.output.filename().string() : name);
   }
   throw LinkError(error.fault(), text);
 }

@@ -34,6 +34,7 @@ struct StackDocuments {
 struct StackConnection {
   std::string command;                   ///< command line, or address at which the stack connects
   std::filesystem::path output;          ///< file for the output of a process that Patrol starts
+  std::string output_name = {};          ///< place of that output in error texts; empty: the name of the file
   std::function<bool()> is_interrupted;  ///< polled while Patrol waits
 };
 

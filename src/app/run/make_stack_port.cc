@@ -49,6 +49,7 @@ std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const Scena
   if (scenario.stack.command.empty()) return make_built_in_stack(scenario, files, context.has_thread);
   StackConnection connection{.command = scenario.stack.command,
                              .output = std::move(context.output),
+                             .output_name = std::move(context.output_name),
                              .is_interrupted = std::move(context.is_interrupted)};
   return std::make_unique<ExternalStack>(
       stack_documents(scenario, context.scenario, files, context.data_root, sim::tick_of(files.world_xml.string())),

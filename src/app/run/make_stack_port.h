@@ -16,6 +16,7 @@ struct StackContext {
   std::string scenario;  ///< name of the scenario
   std::filesystem::path data_root;
   std::filesystem::path output;          ///< file for the output of a stack in another process
+  std::string output_name = {};          ///< place of that output in error texts; empty: the name of the file
   std::function<bool()> is_interrupted;  ///< polled while Patrol waits for such a stack
   bool has_thread = false;               ///< whether the built-in stack and its SLAM have threads of their own
 };
