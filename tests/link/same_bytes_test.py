@@ -263,6 +263,16 @@ class SameBytes(unittest.TestCase):
         self.assertRegex(done.stderr, r"verify: end of the output of the stack:\nTraceback .*(.*\n)+ZeroDivisionError: division by zero\n"
                                       r"patrol: the stack failed at 1\.000 s: ZeroDivisionError: division by zero; its output: above\n\Z")
 
+    def test_a_run_whose_log_is_truncated_is_not_fed(self):
+        run_directory, out = self.path / "truncated", self.path / "fed"
+        shutil.copytree(self.inside, run_directory)
+        log = (run_directory / "log.mcap").read_bytes()
+        (run_directory / "log.mcap").write_bytes(log[:len(log) * 6 // 10])
+        done = feed(run_directory, out)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertEqual(done.stderr, f"patrol: {run_directory}/log.mcap: is incomplete; cannot be fed\n")
+        self.assertFalse(out.exists())
+
     def test_measured_computing_time_is_in_the_log_and_repeated_from_it(self):
         # A tenth of this computer's speed: the delays are longer than a tick, and differ from run to run.
         slow = self.run_to("slow", BUILT_IN, settings=["stack.compute.model=measured", "stack.compute.factor=10"])

@@ -39,6 +39,7 @@ ExitCode feed_run(const FeedOptions& options) {
   const RunDirectory fed = open_run_directory(options.input);
   if (std::filesystem::exists(incomplete_marker(fed.root)))
     fmt::print(stderr, "patrol: {}: incomplete run: fed up to its last message\n", fed.root.string());
+  else require_whole_log(fed, "cannot be fed");
   Scenario scenario = load_scenario(fed.scenario(), options.overrides);
   scenario.stack.command = options.stack.value_or("");  // never starts a command that a run directory names
   const std::filesystem::path data_root = find_data_root(fed.scenario());

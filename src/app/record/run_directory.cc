@@ -51,11 +51,15 @@ RunDirectory open_run_directory(const std::filesystem::path& root) {
   return directory;
 }
 
+void require_whole_log(const RunDirectory& run, const std::string& consequence) {
+  if (!io::McapReader(run.log()).is_complete())
+    throw InputError(fmt::format("{}: is incomplete; {}", run.log().string(), consequence));
+}
+
 void require_complete(const RunDirectory& run, const std::string& consequence) {
   if (std::filesystem::exists(incomplete_marker(run.root)))
     throw InputError(fmt::format("{}: incomplete run; {}", run.root.string(), consequence));
-  if (!io::McapReader(run.log()).is_complete())
-    throw InputError(fmt::format("{}: is incomplete; {}", run.log().string(), consequence));
+  require_whole_log(run, consequence);
 }
 
 }  // namespace patrol::app

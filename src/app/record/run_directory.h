@@ -49,8 +49,10 @@ std::filesystem::path log_of(const std::filesystem::path& run_or_log);
 /// Opens the directory of an existing run. Throws InputError if it contains no log.
 RunDirectory open_run_directory(const std::filesystem::path& root);
 
-/// Throws InputError if a run was cut off or its log is truncated. `consequence`: end of the message, such as "cannot
-/// be scored".
+/// Throws InputError if the log of a run is truncated. `consequence`: end of the message, such as "cannot be scored".
+void require_whole_log(const RunDirectory& run, const std::string& consequence);
+
+/// Throws InputError if a run was cut off or its log is truncated. `consequence`: as for `require_whole_log`.
 void require_complete(const RunDirectory& run, const std::string& consequence);
 
 }  // namespace patrol::app
