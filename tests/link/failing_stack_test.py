@@ -6,6 +6,7 @@ usage: failing_stack_test.py PATROL SOURCE
 import json
 import pathlib
 import random
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -178,6 +179,13 @@ class FailingStack(unittest.TestCase):
         _, done = self.run_until(1.0, pose, time_limit_s=1.5)
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertEqual(done.stderr.count("patrol: warning: frame of /pose is banana: it is taken as map"), 1, done.stderr)
+
+    def test_a_pose_of_a_plan_in_another_frame_is_a_warning(self):
+        plan = ("p = turn.new('/plan'); e = p.element('poses'); e.header.frame_id = 'site'; e.pose.orientation.w = 1.0; "
+                "p.poses.append(e); turn.publish('/plan', p)")
+        _, done = self.run_until(1.0, plan, time_limit_s=1.5)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertEqual(done.stderr, "patrol: warning: frame of /plan is site: it is taken as map\n")
 
     def test_a_topic_that_the_simulator_does_not_send_is_a_warning(self):
         text = AT.format(at_ns=0, action="pass").replace('["/scan"]', '["/scan", "/scann", "/cmd_vel", "/scann"]')

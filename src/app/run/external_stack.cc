@@ -20,6 +20,7 @@
 #include "core/site/site_registration.h"
 #include "io/files/one_line.h"
 #include "io/logs/topics.h"
+#include "io/ros/path_frames.h"
 #include "io/ros/ros_fields.h"
 #include "io/ros/ros_messages.h"
 #include "link/stack_client.h"
@@ -300,10 +301,15 @@ double ExternalStack::cpu_seconds() {
 std::optional<std::string> unexpected_frame(const PublishedMessage& message) {
   if (!message.content) return std::nullopt;
   const std::optional<std::string> expected = expected_frame(*message.content);
-  std::string frame = io::header_of(message.cdr).frame;
-  if (frame.starts_with('/')) frame.erase(0, 1);  // ROS 1
-  if (!expected || frame.empty() || frame == *expected) return std::nullopt;
-  return frame;
+  if (!expected) return std::nullopt;
+  std::vector<std::string> frames = {io::header_of(message.cdr).frame};
+  if (std::holds_alternative<Path>(*message.content) || std::holds_alternative<TrajectoryEstimate>(*message.content))
+    frames = io::path_frames_of(message.cdr);
+  for (std::string& frame : frames) {
+    if (frame.starts_with('/')) frame.erase(0, 1);  // ROS 1
+    if (!frame.empty() && frame != *expected) return frame;
+  }
+  return std::nullopt;
 }
 
 PublishedMessage checked_message(link::PublishedMessage message, const StampRange& stamps) {

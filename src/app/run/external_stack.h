@@ -96,8 +96,8 @@ class ExternalStack final : public StackPort {
 /// writes.
 PublishedMessage checked_message(link::PublishedMessage message, const StampRange& stamps = {});
 
-/// Returns the frame of a message in `map`, `odom` or `site` if it names another one; nullopt without a difference. An
-/// empty frame is none.
+/// Returns the frame of a message in `map`, `odom` or `site` if its header or, in a path, that of a pose names another
+/// one; nullopt without a difference. An empty frame is none.
 std::optional<std::string> unexpected_frame(const PublishedMessage& message);
 
 }  // namespace patrol::app

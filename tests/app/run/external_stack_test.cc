@@ -183,5 +183,18 @@ TEST(UnexpectedFrame, IsNamedForMessagesInMapOdomOrSite) {
   EXPECT_FALSE(frame_of(test::sample_command(), "base_camera_id", "base_footprint"));
 }
 
+TEST(UnexpectedFrame, IsNamedForThePosesOfAPath) {
+  const auto frame_of = [](const auto& message, const std::string& frame) {
+    link::PublishedMessage one = published(message);
+    one.cdr.replace(one.cdr.rfind(std::string("map") + '\0'), frame.size(), frame);  // of the last pose
+    return unexpected_frame(checked_message(std::move(one)));
+  };
+  const TrajectoryEstimate trajectory{.stamp = 2s, .T_map_body = {{1s, {}}, {2s, {}}}};
+  EXPECT_EQ(frame_of(test::sample_path(), "odo"), "odo");
+  EXPECT_EQ(frame_of(trajectory, "odo"), "odo");
+  EXPECT_FALSE(frame_of(test::sample_path(), "map"));
+  EXPECT_FALSE(frame_of(trajectory, "map"));
+}
+
 }  // namespace
 }  // namespace patrol::app::external_stack_test
