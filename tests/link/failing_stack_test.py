@@ -187,6 +187,14 @@ class FailingStack(unittest.TestCase):
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertEqual(done.stderr, "patrol: warning: frame of /plan is site: it is taken as map\n")
 
+    def test_a_command_to_an_instrument_that_the_robot_lacks_is_a_warning(self):
+        topics = ("/scanner/command", "/tem/antenna_command", "/tem/command", "/warning")
+        publish = f"[turn.publish(one, turn.new(one)) for one in {topics}]"
+        _, done = self.run_until(1.0, publish, time_limit_s=1.5)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertEqual(done.stderr, "".join(
+            f"patrol: warning: command on {topic} has no effect: the robot has no such instrument\n" for topic in topics[:3]))
+
     def test_a_topic_that_the_simulator_does_not_send_is_a_warning(self):
         text = AT.format(at_ns=0, action="pass").replace('["/scan"]', '["/scan", "/scann", "/cmd_vel", "/scann"]')
         _, done = self.run_stack(text, time_limit_s=0.5)

@@ -224,7 +224,10 @@ StackAnswer ExternalStack::end_turn() {
     StackAnswer answer{.messages = {}, .next_turn = received.next_turn, .mission_is_over = received.mission_is_over};
     for (link::PublishedMessage& message : received.messages)
       answer.messages.push_back(checked_message(std::move(message), stamp_range()));
-    for (const PublishedMessage& message : answer.messages) warn_of_frame(message);
+    for (const PublishedMessage& message : answer.messages) {
+      warn_of_frame(message);
+      warn_of_instrument(message);
+    }
     answer.delay = delay_of(settings_.compute, cpu_start_s_ ? cpu_seconds() - *cpu_start_s_ : 0.0);
     return answer;
   } catch (const LinkError& error) {
@@ -288,6 +291,11 @@ void ExternalStack::warn_of_frame(const PublishedMessage& message) {
 
 /// CPU time of the process that has connected, with all its threads, since its start. It may be a child of the process
 /// that Patrol started. Throws LinkError if the time cannot be read.
+void ExternalStack::warn_of_instrument(const PublishedMessage& message) {
+  if (!documents_.unanswered.contains(message.topic) || !warned_.insert(message.topic).second) return;
+  fmt::print(stderr, "patrol: warning: command on {} has no effect: the robot has no such instrument\n", message.topic);
+}
+
 double ExternalStack::cpu_seconds() {
   if (process_) process_->is_running();  // collects a process that has ended: its clock would stand still
   const pid_t id = server_->peer_process();

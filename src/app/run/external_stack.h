@@ -28,6 +28,7 @@ struct StackDocuments {
   std::string static_transforms;                   ///< encoded message on /tf_static
   std::string known_map;                           ///< encoded message on /site_map; empty: the robot builds a map
   std::vector<io::McapChannel> recorded = {};      ///< topics of a recorded log beside those that Patrol knows
+  std::set<std::string> unanswered = {};           ///< topics of commands to instruments that the robot lacks
 };
 
 /// Connection to a stack in another process.
@@ -72,6 +73,7 @@ class ExternalStack final : public StackPort {
   StampRange stamp_range() const;
   void warn_of_topics(const std::vector<std::string>& wanted) const;
   void warn_of_frame(const PublishedMessage& message);
+  void warn_of_instrument(const PublishedMessage& message);
 
   StackDocuments documents_;
   StackConnection connection_;

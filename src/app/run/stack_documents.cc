@@ -46,6 +46,17 @@ void document_sensors(const sim::SensorSuiteSettings& sensors, sim::SensorSuiteS
   });
 }
 
+/// Topics of the commands to instruments that the robot lacks. Every robot can have a warning light: it is not
+/// simulated.
+std::set<std::string> topics_without_instrument(const sim::SensorSuiteSettings& sensors,
+                                                const RobotDescription& robot) {
+  std::set<std::string> topics;
+  if (!sensors.scanner.enabled) topics.insert(io::kTopic<ScanCommand>);
+  if (!robot.antenna) topics.insert(io::kTopic<AntennaCommand>);
+  if (!sensors.tem.enabled) topics.insert(io::kTopic<SoundingCommand>);
+  return topics;
+}
+
 }  // namespace
 
 Scenario documented_scenario(const Scenario& scenario) {
@@ -87,7 +98,9 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
                 .documents = to_yaml(documented_scenario(scenario))},
       .environment = {{"PATROL_DATA", data_root.string()}},
       .static_transforms = io::encode(io::sensor_mounts(files.robot)),
-      .known_map = {}};
+      .known_map = {},
+      .recorded = {},
+      .unanswered = topics_without_instrument(scenario.sensors, files.robot)};
   if (files.map) documents.known_map = io::encode(MapUpdate{.stamp = {}, .map = *files.map});
   return documents;
 }
