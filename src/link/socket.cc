@@ -74,6 +74,19 @@ int call_with(const Address& address, const Call& call) {
   return call(reinterpret_cast<const sockaddr*>(&name), static_cast<socklen_t>(sizeof(name)));
 }
 
+/// Returns whether an address is a Unix socket on which no process listens. The probe has another type than the sockets
+/// of stacks: a process that listens gets no connection by it.
+bool is_left_over(const Address& address) {
+  struct stat status {};
+  if (!address.is_unix || ::stat(address.path.c_str(), &status) != 0 || !S_ISSOCK(status.st_mode)) return false;
+  const int probe = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool is_refused =
+      call_with(address, [&](const sockaddr* name, socklen_t size) { return ::connect(probe, name, size); }) != 0 &&
+      errno == ECONNREFUSED;
+  ::close(probe);
+  return is_refused;
+}
+
 Socket open_socket(const Address& address) {
   const int descriptor = ::socket(address.is_unix ? AF_UNIX : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) throw LinkError(LinkFault::kClosed, fmt::format("socket: {}", std::strerror(errno)));
@@ -125,8 +138,13 @@ Socket Socket::listen(const Address& address) {
       call_with(address, [&](const sockaddr* name, socklen_t size) { return ::bind(socket.descriptor_, name, size); });
   const int error = errno;
   ::umask(mask);
-  if (bound != 0 || ::listen(socket.descriptor_, 1) != 0)
-    throw InputError(fmt::format("{}: {}", text_of(address), std::strerror(bound != 0 ? error : errno)));
+  if (bound != 0) {
+    const bool is_free = error == EADDRINUSE && is_left_over(address);
+    throw InputError(fmt::format("{}: {}{}", text_of(address), std::strerror(error),
+                                 is_free ? ", but no process listens there: remove the file" : ""));
+  }
+  if (::listen(socket.descriptor_, 1) != 0)
+    throw InputError(fmt::format("{}: {}", text_of(address), std::strerror(errno)));
   return socket;
 }
 

@@ -222,6 +222,20 @@ class FailingStack(unittest.TestCase):
         self.assertFalse(out.exists())
         self.assertTrue(path.exists())
 
+    def test_the_port_that_the_system_has_chosen_is_named(self):
+        done = run(self.path / "run", "tcp:127.0.0.1:0", settings=["stack.timeout_s=0.1"])
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertRegex(done.stderr, r"\Apatrol: waiting for a stack at tcp:127\.0\.0\.1:[1-9][0-9]*\n\Z")
+
+    def test_runs_at_the_same_time_do_not_wait_at_one_address(self):
+        out = self.path / "sweep"
+        command = [stack_runs.PATROL, "sweep", "street/short", "--set", f"stack.command=unix:{self.path}/socket", "--seeds", "2",
+                   "--jobs", "2", "--out", str(out)]
+        done = subprocess.run(command, cwd=stack_runs.SOURCE, capture_output=True, text=True, timeout=280)
+        self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+        self.assertIn(f"--jobs 2: not possible with stack.command = unix:{self.path}/socket", done.stderr)
+        self.assertFalse(out.exists())
+
     def test_an_invalid_command_is_invalid_input_and_writes_nothing(self):
         for stack, reason in (("no-such-program", "stack no-such-program: program not found"),
                               ("python3 'a", "quotation mark is not closed"),

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +61,30 @@ TEST(Socket, UnixSocketIsForTheUserAloneAndReplacesNoFile) {
     EXPECT_EQ(status.st_mode & 0077U, 0U);
     EXPECT_THROW(Socket::listen({.is_unix = true, .path = path}), InputError);
   }
+  std::filesystem::remove(path);
+}
+
+TEST(Socket, ASocketOfAProcessThatHasEndedIsNamed) {
+  const std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) / ("patrol_left_" + std::to_string(::getpid()));
+  const std::string address = "unix:" + path.string();
+  const auto refusal = [&] {
+    try {
+      Socket::listen(parse_address(address));
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  {
+    const Socket listener = Socket::listen(parse_address(address));
+    EXPECT_EQ(refusal(), address + ": Address already in use");
+    EXPECT_THROW(listener.accept({.timeout = 0ms}), LinkError);  // the refusal has not connected
+  }
+  EXPECT_EQ(refusal(), address + ": Address already in use, but no process listens there: remove the file");
+  std::filesystem::remove(path);
+  std::ofstream(path) << "no socket";
+  EXPECT_EQ(refusal(), address + ": Address already in use");
   std::filesystem::remove(path);
 }
 

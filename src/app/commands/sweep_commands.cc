@@ -36,6 +36,7 @@ void check(const SweepOptions& options) {
 
 ExitCode perform(const std::filesystem::path& scenario, const SweepManifest& manifest, const Shard& shard,
                  const BatchSettings& settings, const std::filesystem::path& out, ResultForm form) {
+  check_sweep(scenario, manifest, settings);
   const SweepDirectory directory = begin_sweep_directory(out, manifest);
   run_sweep(scenario, manifest, directory, shard, settings);
   return finish_sweep(directory, manifest, form, shard);

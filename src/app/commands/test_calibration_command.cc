@@ -139,6 +139,7 @@ ExitCode test_calibration_command(const TestOptions& options) {
                options.scenarios.front().string());
     return ExitCode::kNothingExecuted;
   }
+  for (const PlannedScenario& one : planned) require_own_stacks(one.runs, settings);
   const OutputLock lock = begin_output(out, kCalibration);
   const ResultStore store(runs_folder(out));
   if (!run_batch(missing_runs(planned, store), settings, out))

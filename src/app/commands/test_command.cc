@@ -71,6 +71,7 @@ ExitCode test_command(const TestOptions& options) {
       std::ranges::none_of(tested, [&](const auto& one) { return seeds.seed_of(one.file).has_value(); }))
     throw InputError(fmt::format("{}: names none of the scenarios: a key must be the end of the path of a scenario",
                                  options.seed_table.string()));
+  require_own_stacks(runs_of(tested), settings);
   const OutputLock lock = begin_output(out, kTest);
   save_test_junit(out / "junit.xml", tested);
 

@@ -104,8 +104,10 @@ ExternalStack::ExternalStack(StackDocuments documents, StackConnection connectio
                     connection_.command));
   }
   listener_.emplace(link::Socket::listen(*address_));
-  connecting_ = std::async(std::launch::deferred, [this] {
-    fmt::print(stderr, "patrol: waiting for a stack at {}\n", connection_.command);
+  const std::string shown =
+      address_->is_unix ? connection_.command : fmt::format("tcp:{}:{}", address_->host, listener_->port());
+  connecting_ = std::async(std::launch::deferred, [this, shown] {  // port 0: the system has chosen one
+    fmt::print(stderr, "patrol: waiting for a stack at {}\n", shown);
     connect();
   });
 }
@@ -289,13 +291,13 @@ void ExternalStack::warn_of_frame(const PublishedMessage& message) {
              *expected_frame(*message.content));
 }
 
-/// CPU time of the process that has connected, with all its threads, since its start. It may be a child of the process
-/// that Patrol started. Throws LinkError if the time cannot be read.
 void ExternalStack::warn_of_instrument(const PublishedMessage& message) {
   if (!documents_.unanswered.contains(message.topic) || !warned_.insert(message.topic).second) return;
   fmt::print(stderr, "patrol: warning: command on {} has no effect: the robot has no such instrument\n", message.topic);
 }
 
+/// CPU time of the process that has connected, with all its threads, since its start. It may be a child of the process
+/// that Patrol started. Throws LinkError if the time cannot be read.
 double ExternalStack::cpu_seconds() {
   if (process_) process_->is_running();  // collects a process that has ended: its clock would stand still
   const pid_t id = server_->peer_process();

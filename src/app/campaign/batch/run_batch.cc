@@ -20,6 +20,7 @@
 #include "io/files/output_error.h"
 #include "io/mcap/mcap_reader.h"
 #include "io/yaml/settings_yaml.h"
+#include "link/socket.h"
 
 namespace patrol::app {
 namespace {
@@ -221,6 +222,24 @@ class Batch {
 };
 
 }  // namespace
+
+void require_own_stacks(const std::vector<BatchRun>& runs, const BatchSettings& settings) {
+  if (settings.pool.num_processes < 2 || runs.size() < 2) return;
+  for (const BatchRun& run : runs) {
+    std::string command;
+    try {
+      command = load_scenario(run.scenario, run.overrides).stack.command;
+    } catch (const InputError&) {  // reported by its run
+      continue;
+    }
+    if (link::is_address(command)) {
+      throw InputError(
+          fmt::format("--jobs {}: not possible with stack.command = {}: one run at a time can wait at an address: "
+                      "must be --jobs 1, or a command that starts a stack for each run",
+                      settings.pool.num_processes, command));
+    }
+  }
+}
 
 bool run_batch(const std::vector<BatchRun>& runs, const BatchSettings& settings, const std::filesystem::path& root) {
   return Batch(runs, settings, root).run();

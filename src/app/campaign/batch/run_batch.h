@@ -34,6 +34,9 @@ struct BatchSettings {
   KeepRuns keep = KeepRuns::kNone;
 };
 
+/// Throws InputError if runs at the same time would wait for their stacks at an address, where only one run can wait.
+void require_own_stacks(const std::vector<BatchRun>& runs, const BatchSettings& settings);
+
 /// Executes the runs, stores a verdict for each, and shows the progress. A run that is killed from outside is repeated
 /// once. Returns false if interrupted; completed runs are stored. Throws OutputError (io/files/output_error.h) at the
 /// first run whose output cannot be written: it has no verdict.

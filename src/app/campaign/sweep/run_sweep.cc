@@ -10,6 +10,22 @@
 #include "app/campaign/sweep/comparison.h"
 
 namespace patrol::app {
+namespace {
+
+BatchRun batch_run(const std::filesystem::path& scenario, const SweepManifest& manifest, const PlannedRun& run) {
+  return {.scenario = scenario,
+          .overrides = overrides_of(manifest, run),
+          .key = run.hash,
+          .label = fmt::format("{}, seed {}", manifest.variants[run.variant].name, run.seed)};
+}
+
+}  // namespace
+
+void check_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const BatchSettings& settings) {
+  std::vector<BatchRun> runs;
+  for (const PlannedRun& run : manifest.runs) runs.push_back(batch_run(scenario, manifest, run));
+  require_own_stacks(runs, settings);
+}
 
 void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manifest, const SweepDirectory& directory,
                const Shard& shard, const BatchSettings& settings) {
@@ -23,10 +39,7 @@ void run_sweep(const std::filesystem::path& scenario, const SweepManifest& manif
     for (const std::size_t i : progress.needed) {
       const PlannedRun& run = manifest.runs[i];
       if (!shard.contains(i) || !requested.insert(run.hash).second) continue;
-      runs.push_back({.scenario = scenario,
-                      .overrides = overrides_of(manifest, run),
-                      .key = run.hash,
-                      .label = fmt::format("{}, seed {}", manifest.variants[run.variant].name, run.seed)});
+      runs.push_back(batch_run(scenario, manifest, run));
     }
     if (runs.empty()) return;
     if (!run_batch(runs, settings, directory.root)) {
