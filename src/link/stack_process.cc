@@ -119,7 +119,15 @@ std::optional<std::filesystem::path> find_program(const std::string& program) {
 }
 
 void check_program(const std::string& program) {
-  if (!find_program(program)) throw InputError(fmt::format("stack {}: program not found", program));
+  if (find_program(program)) return;
+  if (std::filesystem::is_regular_file(program)) {
+    const bool is_executable = ::access(program.c_str(), X_OK) == 0;
+    throw InputError(fmt::format(
+        "stack {}: {}", program,
+        is_executable ? "program not found by PATH: must be ./" + program + " to start this file"
+                      : "not executable: must be made executable (chmod +x) or be started by its interpreter"));
+  }
+  throw InputError(fmt::format("stack {}: program not found", program));
 }
 
 StackProcess::StackProcess(const ProcessSettings& settings) {

@@ -55,6 +55,25 @@ TEST(CheckProgram, FindsProgramsByPathAndRefusesOthers) {
   EXPECT_THROW(check_program("/etc/passwd"), InputError);
 }
 
+TEST_F(StackProcessTest, AFileThatIsNoProgramIsRefusedByThePermissionThatItLacks) {
+  const auto refusal = [](const std::string& program) {
+    try {
+      check_program(program);
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  const std::string file = (folder_ / "stack.py").string();
+  EXPECT_EQ(refusal(file), "stack " + file + ": program not found");
+  std::ofstream(file) << "print()\n";
+  EXPECT_EQ(refusal(file),
+            "stack " + file + ": not executable: must be made executable (chmod +x) or be started by its interpreter");
+  EXPECT_EQ(refusal(folder_.string()), "stack " + folder_.string() + ": program not found");
+  std::filesystem::permissions(file, std::filesystem::perms::owner_exec, std::filesystem::perm_options::add);
+  EXPECT_EQ(refusal(file), "");
+}
+
 TEST_F(StackProcessTest, OutputGoesToTheFileAndTheVariablesToTheProcess) {
   ProcessSettings start = settings({"sh", "-c", "echo $GREETING; echo $0 >&2; exit 7", "it's"});
   start.environment = {{"GREETING", "hello there"}};
