@@ -233,6 +233,8 @@ void check_ros_message(const std::string& type, const std::string& definition, s
     throw InputError(fmt::format("not a {}: does not begin with the header of CDR", type));
   std::size_t num_left = 0;
   read_fields(type, definition, bytes, false, num_left);
+  if (num_left > kMaxPadding && definition.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw InputError(fmt::format("definition of {} is empty: must have the fields of the message", type));
   if (num_left > kMaxPadding) throw InputError(fmt::format("not a {}: {} bytes follow the last field", type, num_left));
 }
 

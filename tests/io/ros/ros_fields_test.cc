@@ -48,7 +48,14 @@ TEST(CheckRosMessage, OnlyPaddingToFourBytesMayFollowTheLastField) {
   EXPECT_EQ(refusal_of("my/msg/A", "uint8 a\n", one + std::string(3, '\0')), "");
   EXPECT_EQ(refusal_of("my/msg/A", "uint8 a\n", one + std::string(4, '\0')),
             "not a my/msg/A: 4 bytes follow the last field");
-  EXPECT_EQ(refusal_of("my/msg/A", "", one + "junkjunk"), "not a my/msg/A: 8 bytes follow the last field");
+  EXPECT_EQ(refusal_of("my/msg/A", "uint8 A=1\n", one + "junkjunk"), "not a my/msg/A: 8 bytes follow the last field");
+}
+
+TEST(CheckRosMessage, FieldsOfATypeWithAnEmptyDefinitionAreRefusedByTheDefinition) {
+  for (const char* definition : {"", " \n\n"}) {
+    EXPECT_EQ(refusal_of("my/msg/A", definition, kHead + "12345678"),
+              "definition of my/msg/A is empty: must have the fields of the message");
+  }
 }
 
 TEST(CheckRosMessage, TheNameOfATypeHasAPackageAndMsg) {
