@@ -187,6 +187,9 @@ bool McapScanLog::read_message() {
 
 void McapScanLog::handle(const McapMessage& message) {
   const std::string &topic = message.channel.topic, &type = message.channel.type;
+  if (const std::string& encoding = message.channel.message_encoding;
+      encoding != "cdr" && other_encodings_.size() < kMaxNamespaces)
+    other_encodings_.insert(on_one_line(encoding));
   if (type == kRosType<LaserScan>) {
     if (scan_topics_.empty() && topic != SensorTraits<RearLaserScan>::kInfo.topic) scan_topics_ = {topic};
     if (contains(scan_topics_, topic)) return add_scan(message);
@@ -366,7 +369,8 @@ void McapScanLog::finish() {
   if (summary().num_scans > 0 || !sorter_.is_empty()) return;
   const std::string selected =
       options_.scan_topic.empty() ? "" : fmt::format(" on {} (log.scan_topic)", options_.scan_topic);
-  std::string what = fmt::format("contains no scan{}: must contain sensor_msgs/msg/LaserScan", selected);
+  std::string what = fmt::format("contains no scan{}: must contain sensor_msgs/msg/LaserScan{}", selected,
+                                 other_encodings_.empty() ? "" : " in CDR, the encoding of ROS 2");
   if (without_odometry > 0 && !not_odometry_.empty()) {
     const auto& [topic, frame] = *not_odometry_.begin();
     what = fmt::format("the odometry on {} is in the frame {}, not in odom: can be selected: log.odometry_topic={}",
@@ -379,7 +383,9 @@ void McapScanLog::finish() {
   const std::string clouds = cloud_topics_.empty() ? ""
                                                    : fmt::format("; point clouds can be selected: log.scan_topic={}",
                                                                  join(cloud_topics_, ","));
-  throw InputError(fmt::format("{}: {} ({}){}", file_.string(), what, counted(summary()), clouds));
+  const std::string encodings =
+      other_encodings_.empty() ? "" : fmt::format("; other encodings in the log: {}", join(other_encodings_, ", "));
+  throw InputError(fmt::format("{}: {} ({}){}{}", file_.string(), what, counted(summary()), clouds, encodings));
 }
 
 }  // namespace patrol::io

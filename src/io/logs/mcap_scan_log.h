@@ -78,7 +78,8 @@ class McapScanLog : public ScanLog {
   ScanLogOptions options_;
   McapReader reader_;
   std::vector<std::string> scan_topics_;
-  std::set<std::string> cloud_topics_;  ///< of clouds that are not selected
+  std::set<std::string> cloud_topics_;     ///< of clouds that are not selected
+  std::set<std::string> other_encodings_;  ///< of messages that are not CDR
   std::string odometry_topic_, imu_topic_, body_frame_;
   TransformBuffer odometry_;  ///< odometry topic only
   TransformBuffer frames_;    ///< transforms of /tf and /tf_static

@@ -74,7 +74,8 @@ TEST_F(McapScans, MessagesThatCannotBeReadAreRefusedOrSkipped) {
   EXPECT_THAT(result.summary.skipped, ElementsAre(Pair("unreadable messages", 1U)));
 }
 
-TEST_F(McapScans, AMessageInJsonIsRefusedByItsEncoding) {
+/// Bytes of a log with one message in JSON.
+std::string json_log(const std::string& type, const std::string& topic) {
   const auto record = [](mcap::Opcode opcode, const auto& fill) {
     mcap::RecordWriter content, whole;
     fill(content);
@@ -82,13 +83,13 @@ TEST_F(McapScans, AMessageInJsonIsRefusedByItsEncoding) {
     return std::string(whole.view());
   };
   std::string bytes(mcap::kMagic);
-  bytes += record(mcap::kSchema, [](mcap::RecordWriter& schema) {
+  bytes += record(mcap::kSchema, [&](mcap::RecordWriter& schema) {
     schema.number(std::uint16_t{1});
-    for (const char* text : {kRosType<TransformSet>, "jsonschema", "{}"}) schema.text(text);
+    for (const std::string& text : {type, std::string("jsonschema"), std::string("{}")}) schema.text(text);
   });
-  bytes += record(mcap::kChannel, [](mcap::RecordWriter& channel) {
+  bytes += record(mcap::kChannel, [&](mcap::RecordWriter& channel) {
     for (int i = 0; i < 2; ++i) channel.number(std::uint16_t{1});
-    for (const char* text : {"/tf", "json"}) channel.text(text);
+    for (const std::string& text : {topic, std::string("json")}) channel.text(text);
     channel.number(std::uint32_t{0});
   });
   bytes += record(mcap::kMessage, [](mcap::RecordWriter& message) {
@@ -97,9 +98,24 @@ TEST_F(McapScans, AMessageInJsonIsRefusedByItsEncoding) {
     for (int i = 0; i < 2; ++i) message.number(std::uint64_t{1'000'000'000});
     message.raw("{}");
   });
+  return bytes;
+}
+
+TEST_F(McapScans, AMessageInJsonIsRefusedByItsEncoding) {
   writer.close();
-  write_bytes(file, bytes);
+  write_bytes(file, json_log(kRosType<TransformSet>, "/tf"));
   EXPECT_EQ(complaint(), "log.mcap: /tf at 1.000000000 s: message encoding is json: must be cdr");
+}
+
+TEST_F(McapScans, ALogWhoseScansAreInJsonIsRefusedByTheEncoding) {
+  writer.close();
+  write_bytes(file, json_log("sensor_msgs/LaserScan", "/scan"));
+  ScanLogOptions skip;
+  skip.skip_invalid = true;
+  EXPECT_EQ(
+      complaint(skip),
+      "log.mcap: contains no scan: must contain sensor_msgs/msg/LaserScan in CDR, the encoding of ROS 2 (1 read, 1 "
+      "/scan, 1 unexpected end of file); other encodings in the log: json");
 }
 
 TEST_F(McapScans, ScansAndPosesThatAreNoneAreNamed) {
