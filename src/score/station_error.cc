@@ -8,6 +8,7 @@
 
 #include "core/geometry/angles.h"
 #include "core/geometry/linear_algebra.h"
+#include "score/arrival_score.h"
 #include "score/map_error.h"
 
 namespace patrol::score {
@@ -207,11 +208,12 @@ std::vector<StationError> station_errors(const Route& route_in_world, const std:
     error.map_error_m = map_displacement_m(built, T_world_map, reference, station.p_route_target.head<2>());
     for (const Event& event : events) {
       if (event.kind != EventKind::kStationReached || event.subject != station.name) continue;
-      const std::optional<Pose3> truth = pose_at(T_world_body, event.stamp);
-      if (!truth) continue;
-      const Pose2 T_world_truth = to_pose2(*truth);
+      const Pose2 T_world_truth = true_pose_of(event, T_world_body);
+      const bool is_true = is_arrival(T_world_truth.position(), station.T_route_body.position(), station.accuracy_m);
+      if (error.is_reached && !is_true) continue;
       const Pose2 T_world_estimate = map.at(event.stamp).T_site_map * event.T_map_body;
-      error.is_reached = true;
+      error.is_reported = true;
+      error.is_reached = is_true;
       error.position_error_m = (T_world_estimate.position() - T_world_truth.position()).norm();
       error.heading_error_deg = to_deg(std::abs(wrap_angle(T_world_estimate.yaw - T_world_truth.yaw)));
       error.goal_position_error_m = (T_world_truth.position() - station.T_route_body.position()).norm();

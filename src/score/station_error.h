@@ -18,7 +18,8 @@ namespace patrol::score {
 /// Accuracy at one station of the route.
 struct StationError {
   std::string name;
-  bool is_reached = false;
+  bool is_reported = false;                ///< whether the robot reported an arrival
+  bool is_reached = false;                 ///< whether a reported arrival is true (arrival_score.h)
   double position_error_m = 0.0;           ///< error of the estimated pose in site at the time of the arrival event
   double heading_error_deg = 0.0;          ///< absolute value, at the arrival event
   double goal_position_error_m = 0.0;      ///< distance of the true position from the surveyed one
@@ -44,7 +45,8 @@ std::optional<double> map_displacement_m(const OccupancyGrid& built, const Pose2
 Pose2 fit_map_to_reference(const OccupancyGrid& built, std::span<const Pose2> T_world_map,
                            const DistanceField& reference);
 
-/// One entry per station in the order of the route. `route_in_world` is the survey, the ground truth of the stations.
+/// One entry per station in the order of the route, by its last true arrival, or else by its last reported one.
+/// `route_in_world` is the survey, the ground truth of the stations. Precondition: `T_world_body` is not empty.
 /// `T_world_map`: true pose of the built map; `map`: its pose in site as the robot knows it.
 std::vector<StationError> station_errors(const Route& route_in_world, const std::vector<Event>& events,
                                          const Pose2& T_world_map, const MapInSite& map, const Trajectory& T_world_body,

@@ -149,7 +149,33 @@ TEST(StationErrors, TellBeliefTruthAndSurveyApart) {
   EXPECT_NEAR(errors[0].goal_position_error_m, 0.1, 1e-9);
   EXPECT_TRUE(errors[0].map_error_m);
   EXPECT_EQ(errors[1].name, "box_2");
-  EXPECT_FALSE(errors[1].is_reached);
+  EXPECT_FALSE(errors[1].is_reached || errors[1].is_reported);
+}
+
+/// Station of a route with one station at (9, 1), by a robot that truly drives from (0, 1) to (10, 1) in 10 s.
+StationError error_of_reports(const std::vector<Event>& events) {
+  const Route route{.stations = {make_station("box", {9.0, 1.0, 0.0})}};
+  const Trajectory truth = {{Time(0s), to_pose3({0.0, 1.0, 0.0})}, {Time(10s), to_pose3({10.0, 1.0, 0.0})}};
+  return station_errors(route, events, {}, Pose2{}, truth, make_walls(), field_of(make_walls())).at(0);
+}
+
+TEST(StationErrors, AReportFarFromTheTruePositionIsNoArrivalButHasItsErrors) {
+  const StationError error = error_of_reports({reached("box", 2s, {9.0, 1.0, 0.0})});
+  EXPECT_TRUE(error.is_reported);
+  EXPECT_FALSE(error.is_reached);
+  EXPECT_NEAR(error.goal_position_error_m, 7.0, 1e-9);
+  EXPECT_NEAR(error.position_error_m, 7.0, 1e-9);
+}
+
+TEST(StationErrors, ATrueArrivalCountsBesideFalseReports) {
+  const StationError error = error_of_reports(
+      {reached("box", 2s, {9.0, 1.0, 0.0}), reached("box", 9s, {9.0, 1.0, 0.0}), reached("box", 3s, {9.0, 1.0, 0.0})});
+  EXPECT_TRUE(error.is_reached);
+  EXPECT_NEAR(error.goal_position_error_m, 0.0, 1e-9);
+}
+
+TEST(StationErrors, AReportAfterTheLastGroundTruthIsComparedWithIt) {
+  EXPECT_TRUE(error_of_reports({reached("box", 10s + 15ms, {9.0, 1.0, 0.0})}).is_reached);
 }
 
 TEST(FitMapToReference, FindsAMapTenCentimetersAndOneDegreeOff) {

@@ -34,6 +34,14 @@ class KeyMetricTable {
   std::vector<KeyMetric> rows_;
 };
 
+/// Adds the reports of the robot that its true path contradicts.
+void add_false_reports(KeyMetricTable& table) {
+  if (table.at("mission.reported_completed").value_or(0.0) > table.at("mission.completed").value_or(0.0))
+    table.add("Mission", {"NOT COMPLETED", ""}, "the true path contradicts the report of the robot");
+  if (const double num = table.at("mission.false_arrivals").value_or(0.0); num > 0.0)
+    table.add("FALSE ARRIVALS", {fmt::format("{:.0f}", num), ""}, "reported far from the true position");
+}
+
 void add_accuracy(KeyMetricTable& table) {
   if (const auto rmse_m = table.at("pose.site.ate_rmse_m")) {
     table.add("Position error in the survey, RMS", report::length(*rmse_m),
@@ -108,6 +116,7 @@ report::KeyMetrics key_metrics(const io::Metrics& metrics) {
   KeyMetricTable table(metrics);
   add_accuracy(table);
   add_goals(table);
+  add_false_reports(table);
   add_mission(table);
   return {table.take()};
 }

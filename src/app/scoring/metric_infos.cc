@@ -21,7 +21,13 @@ struct Row {
 };
 
 constexpr Row kMission[] = {
-    {"completed", "whether the mission ended as planned"},
+    {"completed",
+     "whether the robot reported the end of the mission as planned, and its true path contradicts no station or goal"},
+    {"reported_completed", "whether the robot reported the end of the mission as planned"},
+    {"false_arrivals",
+     "number of reported arrivals at stations, goals or the dock with the true position more than 1 m farther away "
+     "than "
+     "the accuracy of the station or goal"},
     {"fell", "whether the robot fell"},
     {"collisions", "number of unintended contacts of the robot"},
     {"sensor_faults_noticed", "number of sensor faults that the sensor monitor of the stack reported"},
@@ -136,13 +142,16 @@ constexpr Row kNavigation[] = {
 };
 
 constexpr Row kStations[] = {
-    {"*.reached", "whether the robot reported that it reached the station"},
+    {"*.reached",
+     "whether the robot reported an arrival at the station with its true position at most 1 m farther away than the "
+     "accuracy of the station"},
     {"*.position_error_m",
-     "position error of the estimated pose in the survey frame at the arrival; null if not reached"},
+     "position error of the estimated pose in the survey frame at the reported arrival; null without one"},
     {"*.heading_error_deg",
-     "absolute heading error of the estimated pose in the survey frame at the arrival; null if not reached"},
+     "absolute heading error of the estimated pose in the survey frame at the reported arrival; null without one"},
     {"*.stand_error_m",
-     "distance between the true position at the arrival and the surveyed position of the station; null if not reached"},
+     "distance between the true position at the reported arrival and the surveyed position of the station; null "
+     "without one"},
     {"*.map_error_m",
      "displacement of the station's target in the map, after the best fit of the whole map to the true surfaces"},
     {"*.site_map_error_m",

@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "app/scoring/localizability_oracle.h"
 #include "sim/lining_deformation.h"
 
@@ -71,6 +73,32 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
   if (files.robot.antenna) references.p_body_antenna = files.robot.antenna->T_body_mount.position;
   for (const KidnapSettings& kidnap : scenario.kidnaps) references.kidnaps.push_back(from_seconds(kidnap.at_s));
   return references;
+}
+
+std::vector<score::MissionGoal> mission_goals(const Scenario& scenario, const ScenarioFiles& files) {
+  const bool visits_stations = scenario.stack.mission_type == "gas";
+  const bool visits_goals = !visits_stations && scenario.stack.tunnel_mission.num_runs > 0;
+  std::vector<score::MissionGoal> goals;
+  for (const Station& station : files.route.stations) {
+    goals.push_back({.name = station.name,
+                     .arrival = EventKind::kStationReached,
+                     .p_world_m = station.T_route_body.position(),  // site is world
+                     .accuracy_m = station.accuracy_m,
+                     .is_required = visits_stations});
+  }
+  for (const SavedGoal& goal : files.goals) {
+    if (!files.map) break;  // the pose of a map that the run makes is not given
+    goals.push_back({.name = fmt::format("goal_{}", goal.number),
+                     .arrival = EventKind::kGoalReached,
+                     .p_world_m = (files.T_site_map() * goal.T_map_body).position(),
+                     .accuracy_m = goal.accuracy_m,
+                     .is_required = visits_goals && goal.type != GoalType::kVia});
+  }
+  if (files.route.dock) {
+    goals.push_back(
+        {.name = "", .arrival = EventKind::kDocked, .p_world_m = files.route.dock->T_route_docked.position()});
+  }
+  return goals;
 }
 
 }  // namespace patrol::app

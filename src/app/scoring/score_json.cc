@@ -80,10 +80,9 @@ io::Metrics to_json(const std::vector<score::StationError>& errors) {
     io::Metrics station;
     station["name"] = error.name;
     station["reached"] = error.is_reached;
-    const auto if_reached = [&](double value) { return error.is_reached ? io::Metrics(value) : io::Metrics(); };
-    station["position_error_m"] = if_reached(error.position_error_m);
-    station["heading_error_deg"] = if_reached(error.heading_error_deg);
-    station["stand_error_m"] = if_reached(error.goal_position_error_m);
+    station["position_error_m"] = if_found(error.is_reported, error.position_error_m);
+    station["heading_error_deg"] = if_found(error.is_reported, error.heading_error_deg);
+    station["stand_error_m"] = if_found(error.is_reported, error.goal_position_error_m);
     station["map_error_m"] = error.map_error_m ? io::Metrics(*error.map_error_m) : io::Metrics();
     station["site_map_error_m"] = optional_json(error.site_map_error_m);
     list.push_back(station);
@@ -231,9 +230,14 @@ io::Metrics to_json(const score::WaterScore& score) {
 namespace {
 
 io::Metrics mission_json(const score::MissionScore& mission) {
-  return {{"completed", mission.is_completed},    {"fell", mission.has_fallen},
-          {"collisions", mission.num_collisions}, {"sensor_faults_noticed", mission.num_sensor_faults},
-          {"duration_s", mission.duration_s},     {"distance_m", mission.distance_m}};
+  return {{"completed", mission.is_completed},
+          {"reported_completed", mission.is_reported_completed},
+          {"false_arrivals", mission.num_false_arrivals},
+          {"fell", mission.has_fallen},
+          {"collisions", mission.num_collisions},
+          {"sensor_faults_noticed", mission.num_sensor_faults},
+          {"duration_s", mission.duration_s},
+          {"distance_m", mission.distance_m}};
 }
 
 io::Metrics course_json(const score::CourseScore& course) {

@@ -15,7 +15,7 @@ ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scena
   };
   show("reading the log", 0.0);
   ScoredRun run{.record = read_run_record(log_mcap), .score = {}, .truth = {}, .scans = {}};
-  run.score.mission = score::mission_score(run.record);
+  run.score.mission = score::mission_score(run.record, mission_goals(scenario, files));
   if (scenario.course.optimal_time_s > 0.0 && !files.route.stations.empty()) {
     const Eigen::Vector2d p_world_goal = files.route.stations.back().T_route_body.position();  // site is world
     run.score.course =

@@ -108,8 +108,12 @@ void add_inspection(const RunRecord& record, const RunReferences& references, co
 
 }  // namespace
 
-MissionScore mission_score(const RunRecord& record) {
-  return {.is_completed = record.has_event(EventKind::kMissionCompleted),
+MissionScore mission_score(const RunRecord& record, const std::vector<MissionGoal>& goals) {
+  const bool is_reported_completed = record.has_event(EventKind::kMissionCompleted);
+  const ArrivalScore arrivals = arrival_score(record.events, goals, record.T_world_body);
+  return {.is_completed = is_reported_completed && !arrivals.is_contradicted,
+          .is_reported_completed = is_reported_completed,
+          .num_false_arrivals = arrivals.num_false,
           .has_fallen = record.has_fall_report || record.has_event(EventKind::kFall),
           .num_collisions = record.collisions.size(),
           .num_sensor_faults = record.num_events(EventKind::kSensorFault),

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/route.h"
+#include "score/arrival_score.h"
 #include "score/calibration_score.h"
 #include "score/driven_clearance.h"
 #include "score/goal_error.h"
@@ -43,7 +44,9 @@ struct RunReferences {
 };
 
 struct MissionScore {
-  bool is_completed = false;
+  bool is_completed = false;           ///< reported, and not contradicted by the true path
+  bool is_reported_completed = false;  ///< reported by the robot
+  std::size_t num_false_arrivals = 0;  ///< reported arrivals that the true position contradicts (arrival_score.h)
   bool has_fallen = false;
   std::size_t num_collisions = 0;
   std::size_t num_sensor_faults = 0;  ///< faults that the sensor monitor detected
@@ -95,7 +98,8 @@ struct RunScore {
   std::optional<EstimateScore> estimate;  ///< none: the stack published no estimate
 };
 
-MissionScore mission_score(const RunRecord& record);
+/// `goals`: stations, given goals and dock of the mission.
+MissionScore mission_score(const RunRecord& record, const std::vector<MissionGoal>& goals);
 
 /// Precondition: `record.has_estimate()`. Throws InputError when estimate and ground truth have no instant in common.
 EstimateScore estimate_score(const RunRecord& record, const RunReferences& references);

@@ -81,6 +81,17 @@ TEST(RunSummary, NamesAFallAndEventsThatWereNotTriggered) {
   EXPECT_THAT(text, HasSubstr("not triggered: kidnap at 40 s\n"));
 }
 
+TEST(RunSummary, BeginsTheKeyMetricsWithReportsThatTheTruthContradicts) {
+  RunVerdict verdict = verdict_with({});
+  EXPECT_THAT(run_summary("street/patrol, seed 1", verdict, "out/run", TextStyle::kPlain), Not(HasSubstr("FALSE")));
+  verdict.metrics["mission"]["completed"] = false;
+  verdict.metrics["mission"]["reported_completed"] = true;
+  verdict.metrics["mission"]["false_arrivals"] = 4;
+  const std::string text = run_summary("street/patrol, seed 1", verdict, "out/run", TextStyle::kPlain);
+  EXPECT_THAT(text, HasSubstr("NOT COMPLETED  the true path contradicts the report of the robot"));
+  EXPECT_LT(text.find("FALSE ARRIVALS"), text.find("Position error"));
+}
+
 TEST(RunSummary, HasColorsOnlyInColorStyle) {
   const RunVerdict verdict = verdict_with({check("pose.ate_rmse_m", true), check("map.coverage", false)});
   EXPECT_THAT(run_summary("street/patrol, seed 1", verdict, "out/run", TextStyle::kPlain), Not(HasSubstr("\033")));

@@ -84,8 +84,10 @@ Task task_of(const StackClient& client) {
   if (!hello.goals.empty()) {
     for (const nlohmann::json& goal : nlohmann::json::parse(hello.goals)) task.goals.push_back(pose_of(goal));
   } else {
-    for (const nlohmann::json& station : site.at("stations"))
+    for (const nlohmann::json& station : site.at("stations")) {
       task.goals.push_back(T_site_map.inverse() * pose_of(station));
+      task.stations.push_back(station.at("name").get<std::string>());
+    }
   }
   if (task.goals.empty()) throw std::runtime_error("the scenario gives neither saved goals nor stations");
   return task;

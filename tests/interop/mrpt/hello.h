@@ -19,9 +19,10 @@ struct Task {
   patrol::RobotDescription robot = {};
   double ticks_per_turn = 0.0;  ///< counts of a track encoder per turn of the sprocket
   std::optional<patrol::OccupancyGrid> map =
-      std::nullopt;               ///< none: the robot makes its own from the surveyed start, its origin
-  Pose2 T_map_start = {};         ///< surveyed start
-  std::vector<Pose2> goals = {};  ///< in map: saved goals, else the stations of the mission
+      std::nullopt;                        ///< none: the robot makes its own from the surveyed start, its origin
+  Pose2 T_map_start = {};                  ///< surveyed start
+  std::vector<Pose2> goals = {};           ///< in map: saved goals, else the stations of the mission
+  std::vector<std::string> stations = {};  ///< names of the goals that are stations
   NavigationSettings navigation = {};
   std::uint64_t seed = 0;
 };

@@ -100,8 +100,11 @@ void Stack::report_goals(Time now) {
                          .p_map_target = T_map_body().position()};
   };
   for (; num_reported_ < navigation_.num_reached(); ++num_reported_) {
-    client_.publish(
-        now, event(patrol::EventKind::kGoalReached, "goal_" + std::to_string(num_reported_ + 1), "Goal reached.", 1.0));
+    const bool is_station = num_reported_ < task_.stations.size();
+    client_.publish(now, is_station ? event(patrol::EventKind::kStationReached, task_.stations[num_reported_],
+                                            "Station reached.", 0.0)
+                                    : event(patrol::EventKind::kGoalReached,
+                                            "goal_" + std::to_string(num_reported_ + 1), "Goal reached.", 1.0));
     if (navigation_.is_over() && num_reported_ + 1 == task_.goals.size())
       client_.publish(now, event(patrol::EventKind::kMissionCompleted, "", "All goals reached.", 0.0));
   }

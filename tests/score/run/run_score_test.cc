@@ -52,7 +52,7 @@ TEST(MissionScore, CountsEventsByTheirKind) {
   record.events = {event_of(EventKind::kSensorFault, 1s, "imu"), event_of(EventKind::kSensorFault, 2s, "lidar"),
                    event_of(EventKind::kSensorRecovered, 3s, "imu"), event_of(EventKind::kMissionCompleted, 4s)};
   record.collisions.resize(2);
-  const MissionScore score = mission_score(record);
+  const MissionScore score = mission_score(record, {});
   EXPECT_TRUE(score.is_completed);
   EXPECT_FALSE(score.has_fallen);
   EXPECT_EQ(score.num_sensor_faults, 2U);
@@ -64,7 +64,41 @@ TEST(MissionScore, CountsEventsByTheirKind) {
 TEST(MissionScore, AFallReportOfTheFirmwareIsAFallWithoutAnEventOfTheStack) {
   RunRecord record = perfect_run();
   record.has_fall_report = true;
-  EXPECT_TRUE(mission_score(record).has_fallen);
+  EXPECT_TRUE(mission_score(record, {}).has_fallen);
+}
+
+/// Stations at the corner and at the end of perfect_run.
+std::vector<MissionGoal> two_stations() {
+  return {{.name = "corner", .p_world_m = {2.0, 0.0}, .accuracy_m = 0.2, .is_required = true},
+          {.name = "end", .p_world_m = {2.0, 2.0}, .accuracy_m = 0.2, .is_required = true}};
+}
+
+TEST(MissionScore, AMissionIsCompletedByTheReportAndATrueArrivalAtEachStation) {
+  RunRecord record = perfect_run();
+  record.events = {event_of(EventKind::kStationReached, 2s, "corner"), event_of(EventKind::kStationReached, 4s, "end"),
+                   event_of(EventKind::kMissionCompleted, 4s)};
+  EXPECT_TRUE(mission_score(record, two_stations()).is_completed);
+  EXPECT_EQ(mission_score(record, two_stations()).num_false_arrivals, 0U);
+  record.events.pop_back();
+  EXPECT_FALSE(mission_score(record, two_stations()).is_completed) << "not reported";
+  EXPECT_FALSE(mission_score(record, two_stations()).is_reported_completed);
+}
+
+TEST(MissionScore, AReportedArrivalFarFromTheStationIsFalseAndTheMissionNotCompleted) {
+  RunRecord record = perfect_run();
+  record.events = {event_of(EventKind::kStationReached, 2s, "corner"), event_of(EventKind::kStationReached, 2s, "end"),
+                   event_of(EventKind::kMissionCompleted, 4s)};
+  const MissionScore score = mission_score(record, two_stations());
+  EXPECT_FALSE(score.is_completed);
+  EXPECT_TRUE(score.is_reported_completed);
+  EXPECT_EQ(score.num_false_arrivals, 1U);
+}
+
+TEST(MissionScore, AMissionWhoseStationsTheRobotNeverReportedIsNotCompleted) {
+  RunRecord record = perfect_run();
+  record.events = {event_of(EventKind::kMissionCompleted, 0s)};
+  EXPECT_FALSE(mission_score(record, two_stations()).is_completed);
+  EXPECT_EQ(mission_score(record, two_stations()).num_false_arrivals, 0U);
 }
 
 TEST(RunRecord, HasAnEstimateWithThreePoses) {

@@ -42,6 +42,8 @@ struct MetricRule {
 
 inline constexpr std::array kMetricRules = std::to_array<MetricRule>({
     {"mission.completed", LimitRule::kTruth, true},
+    {"mission.reported_completed", LimitRule::kTruth, false},
+    {"mission.false_arrivals", LimitRule::kMaxCount, false},
     {"mission.fell", LimitRule::kTruth, false},
     {"mission.collisions", LimitRule::kMaxCount, true},
     {"mission.sensor_faults_noticed", LimitRule::kMaxCount, false},
