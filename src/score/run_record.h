@@ -37,9 +37,11 @@ struct RunRecord {
   std::vector<Collision> collisions;
   std::vector<LiningResult> linings;
   std::vector<WaterResult> waters;
-  std::size_t num_paths = 0;  ///< paths that the navigation planned
-  OccupancyGrid map;          ///< newest map
-  bool is_complete = false;   ///< whether the log has its end
+  std::size_t num_paths = 0;    ///< paths with poses that the navigation planned
+  bool has_empty_path = false;  ///< whether a path without poses was published
+  OccupancyGrid map;            ///< newest map
+  bool has_empty_map = false;   ///< whether the newest map was published without cells
+  bool is_complete = false;     ///< whether the log has its end
 
   std::size_t num_events(EventKind kind) const;
   bool has_event(EventKind kind) const { return num_events(kind) > 0; }

@@ -57,14 +57,20 @@ RunRecord read_run_record(const std::filesystem::path& log_mcap) {
       [&](Time, const CalibrationEstimate& calibration) { record.calibration = calibration; });
   handlers.on<FallReport>([&](Time, const FallReport&) { record.has_fall_report = true; });
   handlers.on<Event>([&](Time, const Event& event) { record.events.push_back(event); });
-  handlers.on<Path>([&](Time, const Path&) { ++record.num_paths; });
+  handlers.on<Path>([&](Time, const Path& path) {
+    if (path.T_map_body.empty()) record.has_empty_path = true;
+    else ++record.num_paths;
+  });
   handlers.on<Collision>([&](Time, const Collision& collision) { record.collisions.push_back(collision); });
   handlers.on<LocalizationConfidence>(
       [&](Time, const LocalizationConfidence& confidence) { record.confidences.push_back(confidence); });
   handlers.on<TeleopCommand>([&](Time, const TeleopCommand& command) { record.teleop.push_back(command); });
   handlers.on<LiningResult>([&](Time, const LiningResult& result) { record.linings.push_back(result); });
   handlers.on<WaterResult>([&](Time, const WaterResult& result) { record.waters.push_back(result); });
-  handlers.on<MapUpdate>([&](Time, const MapUpdate& update) { record.map = update.map; });
+  handlers.on<MapUpdate>([&](Time, const MapUpdate& update) {
+    record.map = update.map;
+    record.has_empty_map = !record.has_map();
+  });
   record.is_complete = io::read_run_log(log_mcap, handlers);
   sort_by_stamp(record.registrations);
   sort_by_stamp(record.confidences);

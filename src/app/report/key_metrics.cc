@@ -63,10 +63,12 @@ void add_accuracy(KeyMetricTable& table) {
 }
 
 void add_goals(KeyMetricTable& table) {
-  const auto is_reached = [](const io::Metrics& station) { return station.value("reached", false); };
+  const auto is_reached = [](const io::Metrics& station) {
+    return io::metric_at(station, "reached").value_or(0.0) > 0.5;
+  };
   table.add_count("Stations reached", "stations", is_reached, "");
   const auto is_always_reached = [](const io::Metrics& goal) {
-    return goal.value("arrivals", 0) > 0 && goal.value("failed", 0) == 0;
+    return io::metric_at(goal, "arrivals").value_or(0.0) > 0.0 && io::metric_at(goal, "failed") == 0.0;
   };
   table.add_count("Goals always reached", "goals", is_always_reached, "");
   const double dockings = table.at("docking.arrivals").value_or(0.0), failed = table.at("docking.failed").value_or(0.0);
@@ -114,9 +116,9 @@ void add_mission(KeyMetricTable& table) {
 
 report::KeyMetrics key_metrics(const io::Metrics& metrics) {
   KeyMetricTable table(metrics);
+  add_false_reports(table);
   add_accuracy(table);
   add_goals(table);
-  add_false_reports(table);
   add_mission(table);
   return {table.take()};
 }

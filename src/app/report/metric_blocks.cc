@@ -53,7 +53,7 @@ report::BoxPlot box_plot(const io::Metrics& metrics, const std::string& metric, 
 
 std::vector<report::TableCell> goal_row(const std::string& name, const io::Metrics& goal) {
   std::vector<report::TableCell> row = {{name}, metric_cell(goal, "arrivals", 0), metric_cell(goal, "failed", 0)};
-  if (goal.value("failed", 0) > 0) row.back().tone = Tone::kBad;
+  if (io::metric_at(goal, "failed").value_or(0.0) > 0.0) row.back().tone = Tone::kBad;
   for (const char* statistic : {"mean", "std", "max"})
     row.push_back(metric_cell(goal, fmt::format("position_error_m.{}", statistic), 2, 100.0));
   for (const char* statistic : {"mean", "std", "max"})
@@ -93,7 +93,7 @@ std::vector<report::Block> station_blocks(const io::Metrics& metrics) {
                                        {"map error, cm", true}},
                            .rows = {}};
   for (const io::Metrics& station : metrics["stations"]) {
-    const bool is_reached = station.value("reached", false);
+    const bool is_reached = io::metric_at(station, "reached").value_or(0.0) > 0.5;
     table.rows.push_back({{station.value("name", "")},
                           is_reached ? report::TableCell{"yes", Tone::kGood} : report::TableCell{"NO", Tone::kBad},
                           metric_cell(station, "position_error_m", 1, 100.0),

@@ -11,6 +11,7 @@
 #include "app/scoring/metric_lines.h"
 #include "app/scoring/score_table.h"
 #include "core/text.h"
+#include "io/logs/topics.h"
 
 namespace patrol::app {
 namespace {
@@ -69,7 +70,8 @@ std::string key_metric_lines(const io::Metrics& metrics) {
 
 std::string unpublished_line(const io::Metrics& metrics) {
   const std::vector<std::string> topics = unpublished_topics(metrics);
-  return topics.empty() ? "" : fmt::format("not published by the stack: {}\n", join(topics, ", "));
+  return (topics.empty() ? "" : fmt::format("not published by the stack: {}\n", join(topics, ", "))) +
+         (has_empty_map(metrics) ? fmt::format("published without occupied cells: {}\n", io::kTopic<MapUpdate>) : "");
 }
 
 std::string untriggered_line(const std::vector<InjectedEvent>& events) {

@@ -1,5 +1,7 @@
 #include "app/scoring/expectations.h"
 
+#include <fnmatch.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -34,29 +36,48 @@ constexpr const char* kNotMeasured = "not measured";
 
 /// Messages of the stack that a group of metrics is computed from.
 struct ScoredTopic {
-  std::string_view metrics;  ///< beginning of their names
+  const char* metrics;  ///< pattern of their paths, with `*`
   const char* topic;
   bool is_of_every_stack;  ///< false: of stacks with the sensor or the method
   bool (*is_published)(const score::RunRecord& record);
+  bool is_count = false;  ///< whether the metrics have the value 0 or false without a message
 };
 
-/// The group of each metric is the first whose name it begins with.
+bool has_events(const score::RunRecord& record) { return !record.events.empty(); }
+bool has_maps(const score::RunRecord& record) { return record.has_map() || record.has_empty_map; }
+
+/// The group of each metric is the first whose pattern it matches.
 constexpr std::array kScoredTopics = std::to_array<ScoredTopic>({
-    {"odometry.", io::kTopic<OdometryEstimate>, true,
+    {"odometry.*", io::kTopic<OdometryEstimate>, true,
      [](const score::RunRecord& record) { return !record.T_odom_body.empty(); }},
-    {"map.", io::kTopic<MapUpdate>, true, [](const score::RunRecord& record) { return record.has_map(); }},
-    {"mission.completed", io::kTopic<Event>, true,
-     [](const score::RunRecord& record) { return !record.events.empty(); }},
-    {"inspection.", io::kTopic<Event>, true, [](const score::RunRecord& record) { return !record.events.empty(); }},
-    {"navigation.paths", io::kTopic<Path>, true, [](const score::RunRecord& record) { return record.num_paths > 0; }},
-    {"localization.", io::kTopic<LocalizationConfidence>, false,
+    {"map.*", io::kTopic<MapUpdate>, true, has_maps},
+    {"stations.*map_error_m", io::kTopic<MapUpdate>, true, has_maps},
+    {"mission.completed", io::kTopic<Event>, true, has_events},
+    {"mission.reported_completed", io::kTopic<Event>, true, has_events, true},
+    {"mission.false_arrivals", io::kTopic<Event>, true, has_events, true},
+    {"mission.sensor_faults_noticed", io::kTopic<Event>, true, has_events, true},
+    {"navigation.detours", io::kTopic<Event>, true, has_events, true},
+    {"navigation.recoveries", io::kTopic<Event>, true, has_events, true},
+    {"stations.*", io::kTopic<Event>, true, has_events, true},
+    {"goals.*", io::kTopic<Event>, true, has_events, true},
+    {"docking.*", io::kTopic<Event>, true, has_events, true},
+    {"inspection.leaks_found", io::kTopic<Event>, true, has_events, true},
+    {"inspection.false_alarms", io::kTopic<Event>, true, has_events, true},
+    {"inspection.*", io::kTopic<Event>, true, has_events},
+    {"navigation.paths", io::kTopic<Path>, true,
+     [](const score::RunRecord& record) { return record.num_paths > 0 || record.has_empty_path; }, true},
+    {"localization.*", io::kTopic<LocalizationConfidence>, false,
      [](const score::RunRecord& record) { return !record.confidences.empty(); }},
-    {"range_pose.", io::kTopic<UwbPoseEstimate>, false,
+    {"range_pose.*", io::kTopic<UwbPoseEstimate>, false,
      [](const score::RunRecord& record) { return !record.T_map_body_by_ranges.empty(); }},
-    {"calibration.", io::kTopic<CalibrationEstimate>, false,
+    {"calibration.*", io::kTopic<CalibrationEstimate>, false,
      [](const score::RunRecord& record) { return record.calibration.has_value(); }},
-    {"", io::kTopic<PoseEstimate>, true, [](const score::RunRecord& record) { return !record.T_map_body.empty(); }},
+    {"*", io::kTopic<PoseEstimate>, true, [](const score::RunRecord& record) { return !record.T_map_body.empty(); }},
 });
+
+bool is_of(const std::string& metric, const ScoredTopic& scored) {
+  return fnmatch(scored.metrics, metric.c_str(), 0) == 0;
+}
 
 /// Returns whether metrics.json states that the stack did not publish a topic.
 bool is_unpublished(const io::Metrics& metrics, const char* topic) {
@@ -67,10 +88,25 @@ bool is_unpublished(const io::Metrics& metrics, const char* topic) {
 /// Explanation of a metric that the run did not measure.
 std::string reason_for_none(const std::string& metric, const io::Metrics& metrics) {
   for (const ScoredTopic& scored : kScoredTopics) {
-    if (metric.starts_with(scored.metrics) && is_unpublished(metrics, scored.topic))
+    if (is_of(metric, scored) && is_unpublished(metrics, scored.topic))
       return fmt::format("not published: {}", scored.topic);
   }
-  return kNotMeasured;
+  const bool is_of_map = metric.starts_with("map.") || metric.ends_with("map_error_m");
+  return is_of_map && has_empty_map(metrics) ? fmt::format("empty: {}", io::kTopic<MapUpdate>) : kNotMeasured;
+}
+
+/// Sets the counts without a message to null. `path`: of `value` in `metrics`.
+void clear_counts(const std::string& path, io::Metrics& value, const io::Metrics& metrics) {
+  const auto path_of = [&](const std::string& key) { return path.empty() ? key : path + "." + key; };
+  if (value.is_object()) {
+    for (auto& [key, child] : value.items()) clear_counts(path_of(key), child, metrics);
+  } else if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i) clear_counts(path_of(fmt::format("{}", i)), value[i], metrics);
+  } else if (value.is_number() || value.is_boolean()) {
+    const auto scored =
+        std::ranges::find_if(kScoredTopics, [&](const ScoredTopic& candidate) { return is_of(path, candidate); });
+    if (scored->is_count && is_unpublished(metrics, scored->topic)) value = nullptr;
+  }
 }
 
 constexpr double kMinMapCoverage = 0.5;
@@ -129,7 +165,8 @@ std::vector<CheckedExpectation> check_expectations(const io::Expectations& expec
       check.is_measured = true;
       check.is_met = *value >= expectation.min && *value <= expectation.max;
       // Without events, a mission counts as not completed, which is not a measurement.
-      const bool is_unknown = metric == "mission.completed" && *value < 0.5 && check.got != kNotMeasured;
+      const bool is_unknown =
+          metric == "mission.completed" && *value < 0.5 && is_unpublished(metrics, io::kTopic<Event>);
       if (is_unknown) check.is_met = false;
       else check.got = expectation.is_boolean ? (*value > 0.5 ? "true" : "false") : fmt::format("{:.4g}", *value);
     }
@@ -138,13 +175,15 @@ std::vector<CheckedExpectation> check_expectations(const io::Expectations& expec
   return checks;
 }
 
-std::vector<std::string> published_topics(const score::RunRecord& record) {
+void add_published_topics(const score::RunRecord& record, bool is_built_in, io::Metrics& metrics) {
   std::vector<std::string> topics;
   for (const ScoredTopic& scored : kScoredTopics) {
     const bool is_listed = std::ranges::find(topics, scored.topic) != topics.end();
-    if (!is_listed && scored.is_published(record)) topics.emplace_back(scored.topic);
+    if (!is_listed && (scored.is_published(record) || (is_built_in && scored.is_count)))
+      topics.emplace_back(scored.topic);
   }
-  return topics;
+  metrics["published_topics"] = topics;
+  clear_counts("", metrics, io::Metrics{{"published_topics", topics}});
 }
 
 std::vector<std::string> unpublished_topics(const io::Metrics& metrics) {
@@ -155,6 +194,10 @@ std::vector<std::string> unpublished_topics(const io::Metrics& metrics) {
       topics.emplace_back(scored.topic);
   }
   return topics;
+}
+
+bool has_empty_map(const io::Metrics& metrics) {
+  return !is_unpublished(metrics, io::kTopic<MapUpdate>) && io::metric_at(metrics, "map.occupied_cells") == 0.0;
 }
 
 void check_expected_metrics(const Scenario& scenario, const io::SettingsSource& source) {

@@ -28,10 +28,14 @@ struct CheckedExpectation {
 /// For a metric of a topic that the stack does not publish, `got` says so.
 std::vector<CheckedExpectation> check_expectations(const io::Expectations& expectations, const io::Metrics& metrics);
 
-/// Topics with scored messages that the stack published, in the order of kScoredTopics.
-std::vector<std::string> published_topics(const score::RunRecord& record);
+/// Adds the topics with scored messages that the stack published, and sets counts of messages on other topics to null.
+/// The built-in stack publishes `/events` and `/plan` whenever there is something to publish, so its counts can be 0.
+void add_published_topics(const score::RunRecord& record, bool is_built_in, io::Metrics& metrics);
 /// Topics with scored messages of every stack that the stack did not publish; empty if metrics.json does not list them.
 std::vector<std::string> unpublished_topics(const io::Metrics& metrics);
+
+/// Returns whether the map that the stack published has no occupied cell.
+bool has_empty_map(const io::Metrics& metrics);
 
 /// Throws InputError for an expectation of an unknown metric, station or calibration parameter, and for one of true or
 /// false of a metric with numbers, with the place of the expectation. `source`: file and overrides of the scenario.

@@ -35,10 +35,11 @@ std::string goal_table(const io::Metrics& metrics) {
   for (const io::Metrics& goal : metrics.at("goals")) {
     const PublishedGoal* published = row < kTable2.size() ? &kTable2[row] : nullptr;
     ++row;
-    const int arrivals = goal.at("arrivals").get<int>(), failed = goal.at("failed").get<int>();
-    if (arrivals > 0) text += line(goal, published);
-    if (failed > 0)
-      text += fmt::format("  {:<8} not reached {} of {} times\n", goal.at("name").get<std::string>(), failed,
+    const double arrivals = io::metric_at(goal, "arrivals").value_or(0.0),
+                 failed = io::metric_at(goal, "failed").value_or(0.0);
+    if (arrivals > 0.0) text += line(goal, published);
+    if (failed > 0.0)
+      text += fmt::format("  {:<8} not reached {:.0f} of {:.0f} times\n", goal.at("name").get<std::string>(), failed,
                           arrivals + failed);
   }
   if (text.empty()) return "";

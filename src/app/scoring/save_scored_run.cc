@@ -68,7 +68,8 @@ void save_scored_run(const RunDirectory& directory, const ScoredRun& run, const 
   if (!run.record.registrations.empty())
     io::save_registration(directory.registration(), run.record.registrations.back());
   io::save_map(directory.truth_map(), score::observable_part(run.truth->reference));
-  if (run.score.estimate->map) io::save_map_errors(directory.map_errors(), run.score.estimate->map->cells_m);
+  if (run.record.has_map() && run.score.estimate->map)
+    io::save_map_errors(directory.map_errors(), run.score.estimate->map->cells_m);
   save_localizability(directory.localizability(), run.score.estimate->localizability);
 }
 

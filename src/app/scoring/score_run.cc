@@ -14,7 +14,11 @@ ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scena
     if (on_stage) on_stage(stage, done);
   };
   show("reading the log", 0.0);
-  ScoredRun run{.record = read_run_record(log_mcap), .score = {}, .truth = {}, .scans = {}};
+  ScoredRun run{.record = read_run_record(log_mcap),
+                .score = {},
+                .truth = {},
+                .scans = {},
+                .has_built_in_stack = scenario.stack.command.empty()};
   run.score.mission = score::mission_score(run.record, mission_goals(scenario, files));
   if (scenario.course.optimal_time_s > 0.0 && !files.route.stations.empty()) {
     const Eigen::Vector2d p_world_goal = files.route.stations.back().T_route_body.position();  // site is world
@@ -33,7 +37,7 @@ ScoredRun score_run(const std::filesystem::path& log_mcap, const Scenario& scena
 
 io::Metrics metrics_of(const ScoredRun& run) {
   io::Metrics metrics = to_json(run.score);
-  metrics["published_topics"] = published_topics(run.record);
+  add_published_topics(run.record, run.has_built_in_stack, metrics);
   return metrics;
 }
 

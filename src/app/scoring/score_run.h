@@ -24,6 +24,7 @@ struct ScoredRun {
   score::RunScore score;
   std::optional<TrueMap> truth;        ///< present with `score.estimate`
   std::vector<io::StationScan> scans;  ///< first panoramic scan of each station
+  bool has_built_in_stack = true;      ///< false: with a stack in another process
 };
 
 /// Called at the start of each stage with its name and the fraction of the whole work that is usually done by then.

@@ -156,7 +156,8 @@ EstimateScore estimate_score(const RunRecord& record, const RunReferences& refer
       .water = {}};
   if (!live.T_odom_body.empty())
     score.odometry = trajectory_error(live.T_odom_body, align_at_start(record.T_odom_body, truth), truth);
-  if (record.has_map()) score.map = run_map_error(record.map, T_world_map, references.map, reference_field);
+  if (record.has_map() || record.has_empty_map)
+    score.map = run_map_error(record.map, T_world_map, references.map, reference_field);
   add_site_map_errors(record, references.route, reference_field, score);
   if (references.route.dock) score.docking = docking_error(record.events, references.route.dock->T_route_docked, truth);
   if (!record.T_map_body_by_ranges.empty())

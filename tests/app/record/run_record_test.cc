@@ -58,6 +58,19 @@ TEST(ReadRunRecord, HasConfidencesAndRegistrationsByTheirStampsNotByTheirReceipt
   }
 }
 
+TEST(ReadRunRecord, CountsPathsWithPosesAndMarksEmptyPathsAndMaps) {
+  const RunRecord record = record_of_log([](io::RunLogWriter& log) {
+    log.write(1s, Path{.stamp = 1s, .T_map_body = {}});
+    log.write(2s, Path{.stamp = 2s, .T_map_body = {{1.0, 0.0, 0.0}}});
+    log.write(2s, MapUpdate{.stamp = 2s, .map = OccupancyGrid({.resolution_m = 0.05, .width = 0, .height = 0}, kFree)});
+  });
+  EXPECT_EQ(record.num_paths, 1U);
+  EXPECT_TRUE(record.has_empty_path && record.has_empty_map);
+  EXPECT_FALSE(record.has_map());
+  const RunRecord silent = record_of_log([](io::RunLogWriter&) {});
+  EXPECT_FALSE(silent.has_empty_path || silent.has_empty_map);
+}
+
 TEST(PoseOfMap, IsThatOfAGivenMapElseOfTheLastRegistrationElseOfTheStart) {
   RunRecord record = registered_run();
   EXPECT_EQ(pose_of_map(record, Pose2{5.0, 6.0, 0.3}).vector(), Eigen::Vector3d(5.0, 6.0, 0.3));

@@ -139,8 +139,63 @@ TEST(Expectations, AMetricOfATopicThatTheStackDoesNotPublishSaysSo) {
   EXPECT_EQ(got("pose.coverage"), "not measured");  // published, but not enough of it
   metrics["published_topics"] = {"/map", "/odom", "/events", "/plan"};
   EXPECT_EQ(got("pose.coverage"), "not published: /pose");
+  EXPECT_EQ(got("mission.completed"), "0");                // measured without poses
   EXPECT_EQ(got("map.coverage"), "not published: /pose");  // the map is scored with an estimate
   EXPECT_EQ(unpublished_topics(metrics), std::vector<std::string>{"/pose"});
+}
+
+/// Metrics of a run without a message on any topic: all counts are 0.
+io::Metrics metrics_without_messages(bool is_built_in, const score::RunRecord& record = {}) {
+  io::Metrics metrics = io::Metrics::parse(R"({
+    "mission": {"completed": false, "reported_completed": false, "false_arrivals": 0, "collisions": 0,
+                "sensor_faults_noticed": 0},
+    "navigation": {"paths": 0, "detours": 0, "recoveries": 0, "clearance": {"min_m": 0.4}},
+    "stations": [{"name": "home", "reached": false, "stand_error_m": null}],
+    "goals": [{"name": "goal_1", "arrivals": 0, "failed": 0}],
+    "inspection": {"leaks": 1, "leaks_found": 0, "false_alarms": 0}
+  })");
+  add_published_topics(record, is_built_in, metrics);
+  return metrics;
+}
+
+CheckedExpectation check_zero(const io::Metrics& metrics, const std::string& metric) {
+  return check_expectations({{metric, band(0.0, 0.0)}}, metrics).front();
+}
+
+TEST(PublishedTopics, CountsOfATopicThatAStackInAnotherProcessDoesNotPublishAreNotMeasured) {
+  const io::Metrics metrics = metrics_without_messages(false);
+  for (const char* metric :
+       {"inspection.false_alarms", "inspection.leaks_found", "navigation.detours", "navigation.recoveries",
+        "mission.sensor_faults_noticed", "mission.false_arrivals", "mission.completed", "stations.home.reached",
+        "stations.home.stand_error_m", "goals.goal_1.arrivals"}) {
+    EXPECT_FALSE(check_zero(metrics, metric).is_met) << metric;
+    EXPECT_EQ(check_zero(metrics, metric).got, "not published: /events") << metric;
+  }
+  EXPECT_EQ(check_zero(metrics, "navigation.paths").got, "not published: /plan");
+  EXPECT_TRUE(check_zero(metrics, "mission.collisions").is_met) << "of the ground truth";
+  EXPECT_EQ(io::metric_at(metrics, "inspection.leaks"), 1.0) << "of the world";
+  EXPECT_EQ(io::metric_at(metrics, "navigation.clearance.min_m"), 0.4);
+}
+
+TEST(PublishedTopics, CountsOfTheBuiltInStackAre0BeforeItsFirstEvent) {
+  const io::Metrics metrics = metrics_without_messages(true);
+  for (const char* metric : {"inspection.false_alarms", "navigation.detours", "navigation.paths",
+                             "mission.sensor_faults_noticed", "mission.completed", "stations.home.reached"}) {
+    EXPECT_TRUE(check_zero(metrics, metric).is_met) << metric;
+  }
+  EXPECT_EQ(unpublished_topics(metrics), (std::vector<std::string>{"/odom", "/map", "/pose"}));
+}
+
+TEST(PublishedTopics, AMapAndAPathWithoutContentArePublished) {
+  score::RunRecord record;
+  record.has_empty_map = record.has_empty_path = true;
+  record.T_map_body = {{Time{}, {}}};
+  io::Metrics metrics = metrics_without_messages(false, record);
+  metrics["map"] = {{"nearest_mean_m", nullptr}, {"coverage", 0.0}, {"occupied_cells", 0}};
+  EXPECT_EQ(unpublished_topics(metrics), (std::vector<std::string>{"/odom", "/events"}));
+  EXPECT_TRUE(check_zero(metrics, "navigation.paths").is_met);
+  EXPECT_TRUE(has_empty_map(metrics));
+  EXPECT_EQ(check_zero(metrics, "map.iou").got, "empty: /map");
 }
 
 TEST(Expectations, MetricsOfAnOlderRunDoNotSayWhatWasPublished) {

@@ -123,6 +123,15 @@ TEST(EstimateScore, OfAStackThatPublishesOnlyPosesHasNoOdometryAndNoMap) {
   EXPECT_FALSE(score.odometry || score.map);
 }
 
+TEST(EstimateScore, OfAMapWithoutCellsHasACoverageOfZero) {
+  RunRecord record = perfect_run();
+  record.map = {};
+  record.has_empty_map = true;
+  const EstimateScore score = estimate_score(record, wall_references());
+  EXPECT_EQ(score.map.value().coverage, 0.0);
+  EXPECT_EQ(score.map.value().num_occupied, 0U);
+}
+
 TEST(EstimateScore, OfAPerfectRunHasNoErrorAndOnlyThePartsThatTheLogHas) {
   RunRecord record = perfect_run();
   record.events = {event_of(EventKind::kReplan, 1s), event_of(EventKind::kRecovery, 2s),
