@@ -58,10 +58,14 @@ std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, cons
                                                             names.front(), 100.0 * confidence_level(manifest)),
                                      .unit = unit.name,
                                      .spans = {}};
-  report::TableBlock table{
-      .caption = "",
-      .columns = {{"variant"}, {"runs", true}, {"mean, " + unit.name, true}, {"difference, " + unit.name, true}, {""}},
-      .rows = {}};
+  report::TableBlock table{.caption = "",
+                           .columns = {{"variant"},
+                                       {"runs", true},
+                                       {"failed", true},
+                                       {"mean, " + unit.name, true},
+                                       {"difference, " + unit.name, true},
+                                       {""}},
+                           .rows = {}};
   for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
     const std::string& name = names[variant];
     const VariantMetric entry =
@@ -82,6 +86,7 @@ std::vector<report::Block> comparison_blocks(const SweepManifest& manifest, cons
     }
     table.rows.push_back({{name},
                           {std::to_string(entry.num_runs)},
+                          {entry.failed_text(), entry.num_failed > 0 ? Tone::kBad : Tone::kPlain},
                           {interval_text(entry.interval, unit, "")},
                           {variant == 0 ? "" : interval_text(entry.difference, unit, "+")},
                           {entry.verdict, tone_of(entry)}});

@@ -25,17 +25,22 @@ report::VerdictBlock sweep_verdict(const SweepManifest& manifest, const SweepRow
                                    const SweepProgress& progress) {
   const std::string& metric = manifest.metrics.front();
   const std::vector<std::string> names = short_names(manifest);
-  std::vector<std::string> better, worse;
+  std::vector<std::string> better, worse, undecided;
   for (std::size_t variant = 1; variant < manifest.variants.size(); ++variant) {
     const VariantMetric entry =
         compare(manifest, rows, metric, progress.num_seeds[variant], confidence_level(manifest))[variant];
     if (entry.verdict == "lower") better.push_back(names[variant]);
     if (entry.verdict == "higher") worse.push_back(names[variant]);
+    if (entry.verdict == "runs failed") undecided.push_back(names[variant]);
   }
   report::VerdictBlock verdict;
   if (manifest.variants.size() == 1) {
     verdict.word = "One variant";
     verdict.reason = "No comparison.";
+  } else if (better.empty() && worse.empty() && !undecided.empty()) {
+    verdict.word = "Runs failed";
+    verdict.tone = Tone::kBad;
+    verdict.reason = fmt::format("{}: no comparison with {} for {}.", metric, names.front(), join(undecided, "; "));
   } else if (better.empty() && worse.empty()) {
     verdict.word = "No difference";
     verdict.tone = Tone::kFaint;

@@ -66,6 +66,9 @@ static_assert(is_in_order(kRunStatuses));
 
 constexpr std::string_view name_of(RunStatus status) { return row_of(kRunStatuses, status).name; }
 constexpr ExitCode exit_code_of(RunStatus status) { return row_of(kRunStatuses, status).code; }
+/// Returns whether a run with this status was cut off by a failure or a wall-clock limit: its metrics are those of a
+/// part of the mission.
+constexpr bool is_failure(RunStatus status) { return status > RunStatus::kTimeLimit; }
 
 /// Result of a run.
 struct RunVerdict {

@@ -50,6 +50,15 @@ TEST(SweepPage, ADifferenceIsSaidInTheVerdictWithItsDirection) {
   EXPECT_THAT(SmallSweep(-0.02).verdict().reason, HasSubstr("lower with second"));
 }
 
+TEST(SweepPage, AVariantWhoseRunsAllFailedHasNoDirection) {
+  SmallSweep sweep(-0.02);
+  for (std::size_t i = 0; i < sweep.rows.size(); ++i) {
+    if (sweep.manifest.runs[i].variant == 1) sweep.rows[i]->end = RunStatus::kStackFailed;
+  }
+  EXPECT_EQ(sweep.verdict().word, "Runs failed");
+  EXPECT_THAT(sweep.verdict().reason, HasSubstr("no comparison with first for second."));
+}
+
 TEST(SweepPage, AnIntervalThatHoldsZeroIsNoDifference) { EXPECT_EQ(SmallSweep(0.0).verdict().word, "No difference"); }
 
 // Differences 1, 2 and 1.5 cm: p = 0.035. Of two variants, Holm's correction doubles it.

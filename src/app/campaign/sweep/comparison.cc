@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace patrol::app {
 namespace {
 
@@ -10,8 +12,9 @@ constexpr double kError = 0.05;  ///< probability of a false difference
 
 std::size_t seed_index(const SweepManifest& manifest, std::size_t run) { return run / manifest.variants.size(); }
 
-std::string verdict_of(const VariantMetric& entry, double level) {
-  if (!entry.difference || !entry.p_adjusted) return "too few pairs";
+/// `has_failures`: whether runs of the variant or of the first variant failed.
+std::string verdict_of(const VariantMetric& entry, bool has_failures, double level) {
+  if (!entry.difference || !entry.p_adjusted) return has_failures ? "runs failed" : "too few pairs";
   if (*entry.p_adjusted >= 1.0 - level) return "no difference";
   return entry.difference->center < 0.0 ? "lower" : "higher";
 }
@@ -36,6 +39,10 @@ void add_needed(const SweepManifest& manifest, const SweepRows& rows, const std:
 
 }  // namespace
 
+std::string VariantMetric::failed_text() const {
+  return num_failed == 0 ? "0" : fmt::format("{} of {}", num_failed, num_seeds);
+}
+
 std::vector<VariantMetric> compare(const SweepManifest& manifest, const SweepRows& rows, const std::string& metric,
                                    std::size_t num_seeds, double level) {
   const auto seed_values = flatten_metrics(manifest, rows, metric);
@@ -49,6 +56,8 @@ std::vector<VariantMetric> compare(const SweepManifest& manifest, const SweepRow
     }
     VariantMetric entry{.variant = variant,
                         .num_runs = values.size(),
+                        .num_failed = count_failures(manifest, rows, variant, num_seeds),
+                        .num_seeds = num_seeds,
                         .mean = score::mean(values),
                         .interval = score::mean_interval(values),
                         .num_pairs = differences.size(),
@@ -65,7 +74,8 @@ std::vector<VariantMetric> compare(const SweepManifest& manifest, const SweepRow
   for (VariantMetric& entry : compared) p_values.push_back(&entry.p_adjusted);
   score::adjust_by_holm(p_values);
   for (VariantMetric& entry : compared) {
-    if (entry.variant > 0) entry.verdict = verdict_of(entry, level);
+    const bool has_failures = entry.num_failed + compared.front().num_failed > 0;
+    if (entry.variant > 0) entry.verdict = verdict_of(entry, has_failures, level);
   }
   return compared;
 }

@@ -13,16 +13,21 @@ namespace patrol::app {
 /// Metric of one variant over the seeds, with its difference from the first variant.
 struct VariantMetric {
   std::size_t variant = 0;
-  std::size_t num_runs = 0;  ///< runs with a value of the metric
+  std::size_t num_runs = 0;    ///< runs with a value of the metric that did not fail
+  std::size_t num_failed = 0;  ///< runs that failed; they are left out
+  std::size_t num_seeds = 0;
   double mean = 0.0;
   std::optional<score::Interval> interval;    ///< 95 % interval of the mean
   std::size_t num_pairs = 0;                  ///< seeds for which both variants have a value
   std::optional<score::Interval> difference;  ///< mean of the paired differences; none for the first variant
   /// p-value of a difference of zero, adjusted for the number of variants [Holm79]; none for the first variant
   std::optional<double> p_adjusted;
-  /// "lower", "higher", "no difference" (p_adjusted is not below 1 - level), "too few pairs"; empty for the first
-  /// variant.
+  /// "lower", "higher", "no difference" (p_adjusted is not below 1 - level), "too few pairs", or "runs failed" if those
+  /// are the reason for too few; empty for the first variant.
   std::string verdict;
+
+  /// Number of failed runs: "3 of 3"; "0" without one.
+  std::string failed_text() const;
 };
 
 /// Compares the variants over the runs of the first `num_seeds` seeds, [variant]. Equal seeds give equal noise in all

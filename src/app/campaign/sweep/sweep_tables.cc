@@ -84,8 +84,8 @@ io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const
 
 io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {
   io::Table table{.name = "comparison",
-                  .columns = {"metric", "variant", "runs", "mean", "mean_low", "mean_high", "pairs", "difference",
-                              "difference_low", "difference_high", "p_adjusted", "verdict"},
+                  .columns = {"metric", "variant", "runs", "failed", "mean", "mean_low", "mean_high", "pairs",
+                              "difference", "difference_low", "difference_high", "p_adjusted", "verdict"},
                   .rows = {}};
   const auto add_interval = [](std::vector<io::TableValue>& row, const std::optional<score::Interval>& interval) {
     row.push_back(interval ? number(interval->low) : io::TableValue{});
@@ -98,6 +98,7 @@ io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows,
       row.emplace_back(manifest.metrics[metric]);
       row.emplace_back(manifest.variants[entry.variant].name);
       row.push_back(whole(entry.num_runs));
+      row.push_back(whole(entry.num_failed));
       row.push_back(entry.num_runs > 0 ? number(entry.mean) : io::TableValue{});
       add_interval(row, entry.interval);
       row.push_back(whole(entry.num_pairs));
@@ -116,15 +117,17 @@ std::string comparison_text(const SweepManifest& manifest, const SweepRows& rows
   std::string text;
   const auto all = comparisons(manifest, rows, progress);
   for (std::size_t metric = 0; metric < all.size(); ++metric) {
-    text += fmt::format("{}\n  {:<{}}  {:>5}  {:>32}  {:>5}  {:>34}\n", manifest.metrics[metric], "variant", width,
-                        "runs", "mean [95 %]", "pairs", "difference from the first");
+    const bool has_failures = std::ranges::any_of(all[metric], [](const auto& entry) { return entry.num_failed > 0; });
+    const auto failures = [&](const std::string& cell) { return has_failures ? fmt::format("  {:>8}", cell) : ""; };
+    text += fmt::format("{}\n  {:<{}}  {:>5}{}  {:>32}  {:>5}  {:>34}\n", manifest.metrics[metric], "variant", width,
+                        "runs", failures("failed"), "mean [95 %]", "pairs", "difference from the first");
     for (const VariantMetric& entry : all[metric]) {
       const std::string mean =
           entry.interval ? fmt::format("{:.4g} [{:.4g}, {:.4g}]", entry.mean, entry.interval->low, entry.interval->high)
           : entry.num_runs > 0 ? fmt::format("{:.4g}", entry.mean)
                                : "-";
-      text +=
-          fmt::format("  {:<{}}  {:>5}  {:>32}", manifest.variants[entry.variant].name, width, entry.num_runs, mean);
+      text += fmt::format("  {:<{}}  {:>5}{}  {:>32}", manifest.variants[entry.variant].name, width, entry.num_runs,
+                          failures(entry.failed_text()), mean);
       if (entry.variant > 0)
         text += fmt::format("  {:>5}  {:>34}  {}", entry.num_pairs, spread(entry.difference), entry.verdict);
       text += "\n";

@@ -12,8 +12,8 @@ namespace patrol::app {
 /// `performance`, which is not reproducible.
 io::Table runs_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
-/// Table with one row per compared metric and variant: mean, 95 % interval, paired difference from the first variant,
-/// verdict.
+/// Table with one row per compared metric and variant: numbers of runs, mean, 95 % interval, paired difference from the
+/// first variant, verdict.
 io::Table comparison_table(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress);
 
 /// Comparison as text for a terminal.

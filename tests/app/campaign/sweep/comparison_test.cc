@@ -47,6 +47,22 @@ SweepRows rows_of(const SweepManifest& manifest, Figure figure) {
   return rows;
 }
 
+TEST(Compare, LeavesOutFailedRunsWithTheirPairs) {
+  const SweepManifest manifest = manifest_of(2, 4);
+  SweepRows rows = rows_of(manifest, [](std::size_t variant, std::uint64_t seed) {
+    return static_cast<double>(seed) + 0.01 * static_cast<double>(variant);
+  });
+  rows[1]->end = RunStatus::kStackSilent;
+  rows[1]->metrics["pose"]["ate_rmse_m"] = 100.0;
+  rows[2]->end = RunStatus::kTimeLimit;  // such runs count
+  const VariantMetric compared = compare(manifest, rows, kMetric, 4)[1];
+  EXPECT_EQ(compared.num_failed, 1U);
+  EXPECT_EQ(compared.failed_text(), "1 of 4");
+  EXPECT_EQ(compared.num_pairs, 3U);
+  EXPECT_NEAR(compared.difference->center, 0.01, 1e-12);
+  EXPECT_EQ(compare(manifest, rows, kMetric, 4)[0].failed_text(), "0");
+}
+
 TEST(Compare, PairsCancelWhatSeedsShare) {
   // Seeds differ by whole metres, the variants by 0.01 m in every one of them: spread of the means large, of the
   // difference none.

@@ -9,6 +9,7 @@ namespace patrol::app::sweep_tables_test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 SweepManifest two_by_two() {
   SweepManifest manifest{.scenario = "s.yaml",
@@ -70,11 +71,24 @@ TEST(ComparisonTable, SaysThePairedDifference) {
   const SweepRows rows = rows_taking(1.0);
   const io::Table table = comparison_table(manifest, rows, evaluate_progress(manifest, rows));
   ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_NEAR(std::get<double>(table.rows[1][7]), 0.15, 1e-12);
-  EXPECT_NEAR(std::get<double>(table.rows[1][9]), 0.15 + 0.6353, 1e-4);
-  EXPECT_NEAR(std::get<double>(table.rows[1][10]), 0.2048, 1e-4);
-  EXPECT_EQ(std::get<std::string>(table.rows[1][11]), "no difference");
+  EXPECT_NEAR(std::get<double>(table.rows[1][8]), 0.15, 1e-12);
+  EXPECT_NEAR(std::get<double>(table.rows[1][10]), 0.15 + 0.6353, 1e-4);
+  EXPECT_NEAR(std::get<double>(table.rows[1][11]), 0.2048, 1e-4);
+  EXPECT_EQ(std::get<std::string>(table.rows[1][12]), "no difference");
   EXPECT_THAT(comparison_text(manifest, rows, evaluate_progress(manifest, rows)), HasSubstr("no difference"));
+}
+
+// The metrics of a run whose stack crashed are those of a part of the mission.
+TEST(ComparisonTable, LeavesOutRunsWhoseStackFailedAndHasTheirNumber) {
+  const SweepManifest manifest = two_by_two();
+  SweepRows rows = rows_taking(1.0);
+  EXPECT_THAT(comparison_text(manifest, rows, evaluate_progress(manifest, rows)), Not(HasSubstr("failed")));
+  rows[1]->end = rows[3]->end = RunStatus::kStackFailed;
+  const io::Table table = comparison_table(manifest, rows, evaluate_progress(manifest, rows));
+  EXPECT_THAT(io::to_csv(table), HasSubstr("pose.ate_rmse_m,a=2,0,2,,,,0,,,,,runs failed\r\n"));
+  const std::string text = comparison_text(manifest, rows, evaluate_progress(manifest, rows));
+  EXPECT_THAT(text, HasSubstr("2 of 2"));
+  EXPECT_THAT(text, HasSubstr("runs failed"));
 }
 
 }  // namespace
