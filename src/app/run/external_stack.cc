@@ -20,6 +20,7 @@
 #include "core/site/site_registration.h"
 #include "io/files/one_line.h"
 #include "io/logs/topics.h"
+#include "io/ros/coordinate_limit.h"
 #include "io/ros/path_frames.h"
 #include "io/ros/ros_fields.h"
 #include "io/ros/ros_messages.h"
@@ -45,6 +46,19 @@ bool has_finite_numbers(const stack::StackMessage& message) {
 bool has_resolution(const stack::StackMessage& message) {
   const auto* update = std::get_if<MapUpdate>(&message);
   return update == nullptr || update->map.geometry().resolution_m >= kMinResolution_m;
+}
+
+double max_coordinate_m(const stack::StackMessage& message) {
+  return std::visit([](const auto& content) { return io::max_coordinate_m(content); }, message);
+}
+
+/// Returns the first cell of a map that is neither unknown (-1) nor a probability in percent.
+std::optional<int> invalid_cell(const stack::StackMessage& message) {
+  const auto* update = std::get_if<MapUpdate>(&message);
+  if (update == nullptr) return std::nullopt;
+  const auto& cells = update->map.values();
+  const auto invalid = std::ranges::find_if(cells, [](int cell) { return cell < -1 || cell > 100; });
+  return invalid == cells.end() ? std::nullopt : std::optional<int>(*invalid);
 }
 
 /// Returns whether the rotations of a message are unit quaternions. `content`: of the message; its planar poses no
@@ -366,7 +380,15 @@ PublishedMessage checked_message(link::PublishedMessage message, const StampRang
                        to_seconds(stamps.from), to_seconds(stamps.to)));
   }
   if (!has_finite_numbers(*checked.content)) refuse("contains a number that is not finite");
+  if (const double coordinate_m = max_coordinate_m(*checked.content); coordinate_m > io::kMaxCoordinate_m) {
+    refuse(
+        fmt::format("contains a position with a coordinate of {:g} m: must be within {:.0f} m of the origin of its "
+                    "frame",
+                    coordinate_m, io::kMaxCoordinate_m));
+  }
   if (!has_resolution(*checked.content)) refuse("resolution must be at least 0.0001 m");
+  if (const std::optional<int> cell = invalid_cell(*checked.content))
+    refuse(fmt::format("a cell of the map is {}: must be in [-1, 100]", *cell));
   if (!has_unit_quaternions(*checked.content, checked.cdr)) refuse("contains a quaternion whose norm is not 1");
   return checked;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -14,6 +15,7 @@
 #include <fastcdr/exceptions/Exception.h>
 #include <fastcdr/exceptions/NotEnoughMemoryException.h>
 
+#include "io/ros/coordinate_limit.h"
 #include "io/ros/ros_messages.h"
 
 /// Building blocks of `encode` and `decode` (ros_messages.h), for the files that describe the fields of messages. Each
@@ -66,6 +68,21 @@ struct FiniteCheck {
     }
   }
 };
+
+/// Codec that measures the coordinates of positions (`mark_position` below). It ignores other fields.
+struct CoordinateCheck {
+  RosNames names{};
+  double max_m = 0.0;
+  static constexpr bool kWrites = true;
+  template <typename T>
+  void operator()(const T&) {}
+};
+
+/// Marks a position among the fields of a message, beside its fields.
+template <typename Codec>
+void mark_position(Codec& codec, const Eigen::Vector3d& p_m) {
+  if constexpr (std::is_same_v<Codec, CoordinateCheck>) codec.max_m = std::max(codec.max_m, p_m.cwiseAbs().maxCoeff());
+}
 
 template <typename Codec>
 void time_field(Codec& codec, Time& time) {
@@ -124,6 +141,7 @@ void vector3(Codec& codec, Eigen::Vector3d& v) {
 template <typename Codec>
 void pose3(Codec& codec, Pose3& pose) {
   vector3(codec, pose.position);
+  mark_position(codec, pose.position);
   codec(pose.rotation.x());
   codec(pose.rotation.y());
   codec(pose.rotation.z());
@@ -279,14 +297,23 @@ bool has_finite_numbers(const Message& message) {
   return check.is_finite;
 }
 
+template <typename Message>
+double max_coordinate_m(const Message& message) {
+  Message copy = message;
+  ros::CoordinateCheck check;
+  describe(check, copy);
+  return check.max_m;
+}
+
 }  // namespace patrol::io
 
-/// Instantiates `encode`, `decode`, `has_finite_numbers` and `has_unit_quaternions` of a message with a `describe`
-/// function above.
+/// Instantiates `encode`, `decode`, `has_finite_numbers`, `max_coordinate_m` and `has_unit_quaternions` of a message
+/// with a `describe` function above.
 // NOLINTNEXTLINE(cppcoreguidelines-macro-usage): a template cannot instantiate others
 #define PATROL_ROS_MESSAGE(Message)                              \
   template std::string encode(const Message&, const RosNames&);  \
   template bool has_finite_numbers(const Message&);              \
+  template double max_coordinate_m(const Message&);              \
   template bool has_unit_quaternions<Message>(std::string_view); \
   template Message decode<Message>(std::string_view)
 

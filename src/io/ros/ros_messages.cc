@@ -103,9 +103,8 @@ inline double shortest_decimal(float value) {
 
 /// Throws DecodeError if a grid is too far from the origin of its frame to compute with its cells.
 inline void check_extent(const GridGeometry& geometry) {
-  constexpr double kMaxExtent_m = 1e7;                        // contains the coordinates of map projections
   constexpr double kMaxCells = 1e9, kMinResolution_m = 1e-4;  // an index of a cell is an int
-  const double limit_m = std::min(kMaxExtent_m, kMaxCells * std::max(geometry.resolution_m, kMinResolution_m));
+  const double limit_m = std::min(kMaxCoordinate_m, kMaxCells * std::max(geometry.resolution_m, kMinResolution_m));
   const Eigen::Vector2d size_m = geometry.resolution_m * Eigen::Vector2d(geometry.width, geometry.height);
   for (const Eigen::Vector2d& corner_m : {geometry.origin_m, Eigen::Vector2d(geometry.origin_m + size_m)}) {
     if (corner_m.cwiseAbs().maxCoeff() > limit_m) {
@@ -199,6 +198,7 @@ void describe(Codec& codec, Event& event) {
   codec(event.value);
   pose2(codec, event.T_map_body);
   double height_m = 0.0;
+  mark_position(codec, {event.p_map_target.x(), event.p_map_target.y(), 0.0});
   codec(event.p_map_target.x());
   codec(event.p_map_target.y());
   codec(height_m);

@@ -58,6 +58,17 @@ patrol_client.run(on_turn, turn_period=0.0)
 """
 
 
+FAR = """
+import patrol_client
+
+def on_turn(turn):
+    pose = turn.new("/pose")
+    pose.pose.pose.position.x, pose.pose.pose.orientation.w = 1e9, 1.0
+    turn.publish("/pose", pose)
+
+patrol_client.run(on_turn, turn_period=0.0)
+"""
+
 # Publishes a trajectory of one pose whose quaternion is zero.
 NO_ROTATION = """
 import patrol_client
@@ -213,6 +224,11 @@ class FeedLog(unittest.TestCase):
         self.assertIsNone(fed["estimate"])
         self.assertIn("not published: /pose", done.stdout)
         self.assertFalse((out / "estimate.tum").exists())
+
+    def test_a_pose_far_away_is_a_failure_of_the_stack(self):
+        fed, out, _ = self.feed("far", "--stack", self.stack("far.py", FAR), "--relations", self.relations, code=3)
+        self.assertIn("/pose: contains a position with a coordinate of 1e+09 m", fed["message"])
+        self.assertFalse((out / "INCOMPLETE").exists())
 
     def test_a_failing_stack_has_a_verdict_and_its_poses(self):
         fed, out, done = self.feed("failing", "--stack", self.stack("failing.py", FAILING), code=3)

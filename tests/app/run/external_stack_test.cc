@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -72,6 +74,45 @@ TEST(CheckedMessage, RefusesAMapOfResolution0ByItsResolution) {
   EXPECT_EQ(refusal_of(published(MapUpdate{
                 .stamp = {}, .map = OccupancyGrid({.resolution_m = 0.0, .width = 1, .height = 1}, kUnknown)})),
             "message on /map: resolution must be at least 0.0001 m");
+}
+
+TEST(CheckedMessage, RefusesPositionsFartherThan10000KilometersOnEveryTopicWithAPosition) {
+  const auto refusal = [](double x_m) {
+    const stack::StackMessage all[] = {
+        OdometryEstimate{.T_odom_body = to_pose3({x_m, 0.0, 0.0}), .twist = {}},
+        PoseEstimate{.stamp = {}, .T_map_body = {0.0, x_m, 0.0}},
+        SiteRegistration{.T_site_map = {x_m, 0.0, 0.0}},
+        Path{.stamp = {}, .T_map_body = {{}, {x_m, 0.0, 0.0}}},
+        TrajectoryEstimate{.stamp = {}, .T_map_body = {{{}, to_pose3({x_m, 0.0, 0.0})}}},
+        Event{.T_map_body = {x_m, 0.0, 0.0}},
+        Event{.p_map_target = {0.0, x_m}},
+    };
+    std::set<std::string> refusals;
+    for (const stack::StackMessage& one : all) {
+      const link::PublishedMessage message = std::visit([](const auto& content) { return published(content); }, one);
+      const std::string text = refusal_of(message);
+      refusals.insert(text.substr(text.find(": ") + 1));
+    }
+    return refusals;
+  };
+  EXPECT_EQ(refusal(1e7), std::set<std::string>{""});
+  EXPECT_EQ(refusal(-1e7), std::set<std::string>{""});
+  for (const auto& [x_m, number] : {std::pair{1e300, "1e+300"}, std::pair{-1e9, "1e+09"}}) {
+    EXPECT_EQ(refusal(x_m), std::set<std::string>{fmt::format(" contains a position with a coordinate of {} m: must be "
+                                                              "within 10000000 m of the origin of its frame",
+                                                              number)});
+  }
+}
+
+TEST(CheckedMessage, RefusesCellsOfAMapOutsideOfMinus1To100) {
+  const auto refusal = [](std::int8_t cell) {
+    OccupancyGrid map({.resolution_m = 0.05, .width = 2, .height = 2}, kUnknown);
+    map.values().back() = cell;
+    return refusal_of(published(MapUpdate{.stamp = {}, .map = map}));
+  };
+  EXPECT_EQ(refusal(-1) + refusal(0) + refusal(100), "");
+  EXPECT_EQ(refusal(101), "message on /map: a cell of the map is 101: must be in [-1, 100]");
+  EXPECT_EQ(refusal(-2), "message on /map: a cell of the map is -2: must be in [-1, 100]");
 }
 
 TEST(CheckedMessage, RefusesAResolutionBelowATenthOfAMillimeter) {
