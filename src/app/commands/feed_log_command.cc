@@ -166,6 +166,12 @@ std::string feeding_text(const FeedOptions& options, const RunOutcome& outcome) 
                      outcome.wall_s, to_seconds(outcome.duration) / std::max(1e-9, outcome.wall_s));
 }
 
+/// Reason why the estimate has no score by the references of the call; empty with a score and without references.
+std::string missing_score(const FeedOptions& options, const std::optional<FedEstimate>& estimate, const char* topic) {
+  if (options.relations.empty() && options.reference.empty()) return {};
+  return estimate ? estimate->why_not_scored : fmt::format("not published: {}", topic);
+}
+
 /// Scores the answers of a stack, and completes the directory. `text`: on the log. `log`: its metrics.
 ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& references, std::string text,
                           io::Metrics log, const FedAnswers& fed) {
@@ -180,16 +186,18 @@ ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& refer
                       {"log", std::move(log)},
                       {"performance", {{"wall_s", fed.outcome.wall_s}, {"cpu_s", fed.outcome.cpu_s}}}};
   text += feeding_text(options, fed.outcome);
-  const auto add = [&](const char* name, const char* topic, const std::vector<StampedPose>& poses) {
+  const auto add = [&](const char* name, const char* topic, const std::vector<StampedPose>& poses) -> std::string {
     const std::optional<FedEstimate> estimate =
         score_estimate(options, references, fmt::format("{}.tum", name), topic, poses);
     metrics[name] = estimate ? estimate->metrics() : io::Metrics(nullptr);
     text += estimate ? estimate->text() : fmt::format("\nnot published: {}\n", topic);
+    return missing_score(options, estimate, topic);
   };
+  std::string unscored;
   if (fed.trajectory.empty()) {
-    add("estimate", io::kTopic<PoseEstimate>, fed.poses);
+    unscored = add("estimate", io::kTopic<PoseEstimate>, fed.poses);
   } else {
-    add("estimate", io::kTopic<TrajectoryEstimate>, fed.trajectory);
+    unscored = add("estimate", io::kTopic<TrajectoryEstimate>, fed.trajectory);
     add("online", io::kTopic<PoseEstimate>, fed.poses);
   }
   if (!fed.outcome.stack_failure.empty()) {
@@ -199,7 +207,9 @@ ExitCode complete_fed_log(const FeedOptions& options, const LogReferences& refer
   io::save_metrics(options.out / "metrics.json", metrics);
   complete_output(options.out);
   print_result(options.form, text + fmt::format("\n{}\n", options.out.string()), metrics);
-  return exit_code_of(status);
+  if (unscored.empty()) return exit_code_of(status);
+  fmt::print(stderr, "patrol: the estimate is not scored by the reference: {}\n", unscored);
+  return worse(exit_code_of(status), ExitCode::kWrongInput);
 }
 
 /// Feeds a stack with the scans and the odometry of a log.

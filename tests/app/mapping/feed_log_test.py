@@ -220,10 +220,21 @@ class FeedLog(unittest.TestCase):
         self.assertEqual(fed["estimate"]["reference"]["pose"]["coverage"], 1.0)
 
     def test_a_stack_that_publishes_nothing_is_reported(self):
-        fed, out, done = self.feed("silent", "--stack", self.stack("silent.py", SILENT), "--relations", self.relations)
+        fed, out, done = self.feed("silent", "--stack", self.stack("silent.py", SILENT), "--relations", self.relations, code=2)
         self.assertIsNone(fed["estimate"])
         self.assertIn("not published: /pose", done.stdout)
+        self.assertIn("patrol: the estimate is not scored by the reference: not published: /pose\n", done.stderr)
         self.assertFalse((out / "estimate.tum").exists())
+        self.assertFalse((out / "INCOMPLETE").exists())
+        self.feed("silent_without_reference", "--stack", self.stack("silent.py", SILENT))
+
+    def test_a_reference_of_another_time_is_2_as_in_score(self):
+        later = self.folder / "later.tum"
+        later.write_text("".join(f"{START_S + 5000 + k} {k} 0 0 0 0 0 1\n" for k in range(5)))
+        fed, out, done = self.feed("later", "--reference", later, code=2)
+        self.assertIn("not_scored", fed["estimate"])
+        score = self.patrol("score", "--estimate", out / "estimate.tum", "--reference", later, code=2)
+        self.assertEqual(done.stderr.strip().splitlines()[-1].split("reference: ")[1], score.stderr.strip().removeprefix("patrol: "))
 
     def test_a_pose_far_away_is_a_failure_of_the_stack(self):
         fed, out, _ = self.feed("far", "--stack", self.stack("far.py", FAR), "--relations", self.relations, code=3)
@@ -262,7 +273,7 @@ class FeedLog(unittest.TestCase):
         one = self.folder / "block.log.one" / "block.log"
         one.parent.mkdir()
         one.write_text(next(line for line in self.lines if line.startswith("FLASER")) + "\n")
-        fed, out, _ = self.feed("one", "--stack", f"{PATROL} stack", "--reference", self.reference(), log=one)
+        fed, out, _ = self.feed("one", "--stack", f"{PATROL} stack", "--reference", self.reference(), log=one, code=2)
         self.assertEqual(fed["estimate"]["poses"], 1)
         self.assertIn("not_scored", fed["estimate"])  # a trajectory of one pose
 
