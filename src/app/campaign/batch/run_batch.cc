@@ -225,7 +225,11 @@ class Batch {
 
 void require_own_stacks(const std::vector<BatchRun>& runs, const BatchSettings& settings) {
   if (settings.pool.num_processes < 2 || runs.size() < 2) return;
+  std::set<std::pair<std::filesystem::path, std::vector<std::string>>> checked;  // runs but for their seeds
   for (const BatchRun& run : runs) {
+    std::vector<std::string> overrides = run.overrides;
+    std::erase_if(overrides, [](const std::string& one) { return one.starts_with("seed="); });
+    if (!checked.emplace(run.scenario, std::move(overrides)).second) continue;
     std::string command;
     try {
       command = load_scenario(run.scenario, run.overrides).stack.command;
