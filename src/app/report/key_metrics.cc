@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/report/metric_blocks.h"
+#include "core/text.h"
 #include "report/quantity.h"
 
 namespace patrol::app {
@@ -20,13 +24,23 @@ class KeyMetricTable {
   }
   std::vector<KeyMetric> take() { return std::move(rows_); }
 
-  /// Adds the number of a list's entries for which `holds` is true.
+  /// Adds the number of a list's entries for which `holds` is true, with the names of others, for which it is false.
   template <typename Holds>
-  void add_count(const std::string& label, const std::string& list, const Holds& holds, const std::string& note) {
+  void add_count(const std::string& label, const std::string& list, const Holds& holds) {
+    constexpr std::size_t kMaxNames = 3;
     if (!metrics_.contains(list) || metrics_[list].empty()) return;
     int num = 0;
-    for (const io::Metrics& entry : metrics_[list]) num += holds(entry) ? 1 : 0;
-    add(label, {fmt::format("{} of {}", num, metrics_[list].size()), ""}, note);
+    std::vector<std::string> others;
+    for (const io::Metrics& entry : metrics_[list]) {
+      const std::optional<bool> is_true = holds(entry);
+      num += is_true.value_or(false) ? 1 : 0;
+      if (is_true == false) others.push_back(entry.value("name", ""));
+    }
+    const std::size_t num_more = others.size() - std::min(others.size(), kMaxNames);
+    others.resize(others.size() - num_more);
+    const std::string more = num_more > 0 ? fmt::format(" and {} more", num_more) : "";
+    add(label, {fmt::format("{} of {}", num, metrics_[list].size()), ""},
+        others.empty() ? "" : "not: " + join(others, ", ") + more);
   }
 
  private:
@@ -63,14 +77,14 @@ void add_accuracy(KeyMetricTable& table) {
 }
 
 void add_goals(KeyMetricTable& table) {
-  const auto is_reached = [](const io::Metrics& station) {
-    return io::metric_at(station, "reached").value_or(0.0) > 0.5;
-  };
-  table.add_count("Stations reached", "stations", is_reached, "");
-  const auto is_always_reached = [](const io::Metrics& goal) {
-    return io::metric_at(goal, "arrivals").value_or(0.0) > 0.0 && io::metric_at(goal, "failed") == 0.0;
-  };
-  table.add_count("Goals always reached", "goals", is_always_reached, "");
+  table.add_count("Stations reached", "stations", [](const io::Metrics& station) -> std::optional<bool> {
+    const std::optional<double> reached = io::metric_at(station, "reached");
+    return reached ? std::optional(*reached > 0.5) : std::nullopt;
+  });
+  table.add_count("Goals always reached", "goals", [](const io::Metrics& goal) -> std::optional<bool> {
+    const std::optional<double> arrivals = io::metric_at(goal, "arrivals");
+    return arrivals ? std::optional(*arrivals > 0.0 && io::metric_at(goal, "failed") == 0.0) : std::nullopt;
+  });
   const double dockings = table.at("docking.arrivals").value_or(0.0), failed = table.at("docking.failed").value_or(0.0);
   if (dockings + failed > 0.0) {
     const auto worst_m = table.at("docking.position_error_m.max");

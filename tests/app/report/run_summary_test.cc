@@ -56,6 +56,18 @@ TEST(RunSummary, HasAtMost25Lines) {
   EXPECT_GE(num_lines(text), 20);
 }
 
+TEST(RunSummary, NamesTheFirstStationsThatWereNotReached) {
+  RunVerdict verdict = verdict_with({});
+  const auto summary = [&verdict] { return run_summary("site/patrol, seed 1", verdict, "out/run", TextStyle::kPlain); };
+  EXPECT_THAT(summary(), HasSubstr("1 of 2  not: well\n"));
+  verdict.metrics["stations"] = io::Metrics::array();
+  for (const char* name : {"a", "b", "c", "d", "e"})
+    verdict.metrics["stations"].push_back({{"name", name}, {"reached", false}});
+  EXPECT_THAT(summary(), HasSubstr("0 of 5  not: a, b, c and 2 more\n"));
+  for (io::Metrics& station : verdict.metrics["stations"]) station["reached"] = nullptr;  // not measured
+  EXPECT_THAT(summary(), HasSubstr("0 of 5\n"));
+}
+
 TEST(RunSummary, BeginsWithTheStatusAndTheNumberOfExpectations) {
   const RunVerdict verdict = verdict_with({check("pose.ate_rmse_m", true), check("map.coverage", true)});
   EXPECT_THAT(run_summary("street/patrol, seed 1", verdict, "out/run", TextStyle::kPlain),
