@@ -16,7 +16,6 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "core/gravity.h"
 #include "importer/leg_finder.h"
 #include "importer/normalize.h"
 #include "importer/wheel_finder.h"

@@ -56,7 +56,7 @@ inline constexpr const char* kStackHelp =
     "Command of a stack, or unix:PATH or tcp:127.0.0.1:PORT where it connects (default: by the scenario)";
 inline constexpr const char* kOutHelp = "Output directory";
 inline constexpr const char* kSkipHelp = "Skip unreadable records of a damaged log";
-inline constexpr const char* kLogHelp = "Log file: CARMEN text (plain or gzip) or MCAP";
+inline constexpr const char* kLogHelp = "Log file, CARMEN text (plain or gzip) or MCAP, or run directory";
 inline constexpr const char* kAllHelp = "Print every metric";
 inline constexpr const char* kTokenHelp = "File with the access token (default: $PATROL_TOKEN)";
 

@@ -93,7 +93,9 @@ void add_import_command(CLI::App& app, Call& call) {
   command->add_option("kind", call.imported_kind, "Kind of the input: robot or site")
       ->required()
       ->check(CLI::IsMember({"robot", "site"}));
-  command->add_option("file", call.import_robot.file, "File of the robot or the site, or folder of scans")->required();
+  command
+      ->add_option("file", call.import_robot.file, "File of the robot or the site, folder of scans, or run directory")
+      ->required();
   command->add_option("--out", call.import_robot.out, "Folder models/NAME or worlds/NAME, which must be empty or new")
       ->required();
   add_robot(*command, call.import_robot);

@@ -29,7 +29,7 @@ void add_site_options(CLI::App& command, LogOnSiteOptions& options) {
 void add_realism(CLI::App& app, Call& call) {
   RealismOptions& realism = call.realism;
   CLI::App* command = app.add_subcommand("realism", "Compare recorded scans with simulated ones in a site");
-  command->add_option("log", realism.input.log, "Log file (CARMEN or MCAP) or run directory")->required();
+  command->add_option("log", realism.input.log, kLogHelp)->required();
   add_site_options(*command, realism.input);
   command->add_option("--set", realism.overrides, kSetHelp)->take_all();
   command->add_flag("--skip-invalid", realism.skip_invalid, kSkipHelp);

@@ -1,7 +1,5 @@
 #include "app/scoring/expectations.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -36,7 +34,7 @@ constexpr const char* kNotMeasured = "not measured";
 
 /// Messages of the stack that a group of metrics is computed from.
 struct ScoredTopic {
-  const char* metrics;  ///< pattern of their paths, with `*`
+  std::string_view metrics;  ///< pattern of their paths (matches_metric)
   const char* topic;
   bool is_of_every_stack;  ///< false: of stacks with the sensor or the method
   bool (*is_published)(const score::RunRecord& record);
@@ -75,10 +73,6 @@ constexpr std::array kScoredTopics = std::to_array<ScoredTopic>({
     {"*", io::kTopic<PoseEstimate>, true, [](const score::RunRecord& record) { return !record.T_map_body.empty(); }},
 });
 
-bool is_of(const std::string& metric, const ScoredTopic& scored) {
-  return fnmatch(scored.metrics, metric.c_str(), 0) == 0;
-}
-
 /// Returns whether metrics.json states that the stack did not publish a topic.
 bool is_unpublished(const io::Metrics& metrics, const char* topic) {
   const auto published = metrics.find("published_topics");
@@ -88,7 +82,7 @@ bool is_unpublished(const io::Metrics& metrics, const char* topic) {
 /// Explanation of a metric that the run did not measure.
 std::string reason_for_none(const std::string& metric, const io::Metrics& metrics) {
   for (const ScoredTopic& scored : kScoredTopics) {
-    if (is_of(metric, scored) && is_unpublished(metrics, scored.topic))
+    if (matches_metric(scored.metrics, metric) && is_unpublished(metrics, scored.topic))
       return fmt::format("not published: {}", scored.topic);
   }
   const bool is_of_map = metric.starts_with("map.") || metric.ends_with("map_error_m");
@@ -103,8 +97,8 @@ void clear_counts(const std::string& path, io::Metrics& value, const io::Metrics
   } else if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i) clear_counts(path_of(fmt::format("{}", i)), value[i], metrics);
   } else if (value.is_number() || value.is_boolean()) {
-    const auto scored =
-        std::ranges::find_if(kScoredTopics, [&](const ScoredTopic& candidate) { return is_of(path, candidate); });
+    const auto scored = std::ranges::find_if(
+        kScoredTopics, [&](const ScoredTopic& candidate) { return matches_metric(candidate.metrics, path); });
     if (scored->is_count && is_unpublished(metrics, scored->topic)) value = nullptr;
   }
 }

@@ -284,14 +284,13 @@ void add_goal(Collector& collector, const std::string& group, const std::string&
   collector.add(group + ".heading_error_deg", kSpread, "absolute heading error at " + subject);
 }
 
-/// Whether `path` has the form of `pattern`, in which `*` stands for one or more parts.
-bool matches(const std::string& pattern, const std::string& path) {
+}  // namespace
+
+bool matches_metric(std::string_view pattern, const std::string& path) {
   std::string glob;
   for (const char c : pattern) glob += c == '*' ? "?*" : std::string(1, c);
   return fnmatch(glob.c_str(), path.c_str(), 0) == 0;
 }
-
-}  // namespace
 
 std::vector<MetricInfo> metric_infos() {
   Collector collector;
@@ -323,7 +322,8 @@ std::vector<MetricInfo> metric_infos() {
 
 std::optional<MetricInfo> find_metric_info(const std::string& path) {
   const std::vector<MetricInfo> infos = metric_infos();
-  const auto found = std::ranges::find_if(infos, [&](const MetricInfo& info) { return matches(info.path, path); });
+  const auto found =
+      std::ranges::find_if(infos, [&](const MetricInfo& info) { return matches_metric(info.path, path); });
   return found == infos.end() ? std::nullopt : std::optional(*found);
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace patrol::app {
@@ -15,6 +16,9 @@ struct MetricInfo {
   /// Whether the values are true and false.
   bool is_boolean() const { return summary.starts_with("whether "); }
 };
+
+/// Returns whether `path` has the form of `pattern`, in which `*` stands for at least one character.
+bool matches_metric(std::string_view pattern, const std::string& path);
 
 /// Documentation of all metrics, in the order of metrics.json.
 std::vector<MetricInfo> metric_infos();
