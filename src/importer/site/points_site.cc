@@ -230,7 +230,8 @@ void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size
          ""});
   }
   if (num_dropped > 0)
-    site.assumptions.push_back({"invalid points", fmt::format("{} points are not finite: left out", num_dropped), ""});
+    site.assumptions.push_back(
+        {"invalid points", fmt::format("{} points are not finite, noise or withheld: left out", num_dropped), ""});
 }
 
 /// Refuses coordinates whose floats of 32 bits are too coarse for surfaces.
@@ -347,6 +348,7 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
       error_location(options, source));
   check_points_on_surfaces(cloud, found, error_location(options, source));
   add_frame_rows(site, cloud.origin, cloud.num_dropped, options);
+  if (!cloud.columns.empty()) site.assumptions.push_back({"columns", cloud.columns, "a first line with their names"});
   site.assumptions.push_back(
       {"points",
        fmt::format("{}; smallest cell {:g} m, noise {:.4f} m", cloud.points.size(), found.cell_m, found.noise_m), ""});

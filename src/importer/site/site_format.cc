@@ -20,21 +20,14 @@ struct ExtensionFormat {
 };
 
 constexpr std::array kExtensions = std::to_array<ExtensionFormat>({
-    {".yaml", SiteFormat::kPlan},
-    {".mcap", SiteFormat::kLog},
-    {".clf", SiteFormat::kLog},
-    {".log", SiteFormat::kLog},
-    {".gz", SiteFormat::kLog},
-    {".gltf", SiteFormat::kMesh},
-    {".glb", SiteFormat::kMesh},
-    {".obj", SiteFormat::kMesh},
-    {".dae", SiteFormat::kMesh},
-    {".stl", SiteFormat::kMesh},
-    {".sdf", SiteFormat::kSdf},
-    {".world", SiteFormat::kSdf},
-    {".xml", SiteFormat::kMjcf},
-    {".ply", SiteFormat::kMesh},
-    {".pcd", SiteFormat::kCloud},
+    {".yaml", SiteFormat::kPlan}, {".mcap", SiteFormat::kLog},  {".clf", SiteFormat::kLog},
+    {".log", SiteFormat::kLog},   {".gz", SiteFormat::kLog},    {".gltf", SiteFormat::kMesh},
+    {".glb", SiteFormat::kMesh},  {".obj", SiteFormat::kMesh},  {".dae", SiteFormat::kMesh},
+    {".stl", SiteFormat::kMesh},  {".sdf", SiteFormat::kSdf},   {".world", SiteFormat::kSdf},
+    {".xml", SiteFormat::kMjcf},  {".ply", SiteFormat::kMesh},  {".pcd", SiteFormat::kCloud},
+    {".las", SiteFormat::kCloud}, {".laz", SiteFormat::kCloud}, {".xyz", SiteFormat::kCloud},
+    {".pts", SiteFormat::kCloud}, {".asc", SiteFormat::kCloud}, {".csv", SiteFormat::kCloud},
+    {".txt", SiteFormat::kCloud},
 });
 
 /// Option and the formats that use it.

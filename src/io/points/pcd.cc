@@ -1,11 +1,16 @@
 #include "io/points/pcd.h"
 
+#include <algorithm>
+#include <array>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <lzf.h>
 
+#include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "io/files/line_tokenizer.h"
 #include "io/points/point_table.h"
@@ -16,6 +21,7 @@ namespace {
 constexpr std::int64_t kMaxPcdPoints = 1'000'000'000;
 constexpr std::size_t kMaxPcdFields = 1000;
 constexpr std::int64_t kMaxFieldCount = 100'000;
+constexpr const char* kCompressed = "binary_compressed";
 
 struct PcdHeader {
   std::vector<PointColumn> columns;
@@ -93,7 +99,8 @@ PcdHeader read_pcd_header(FileText& text) {
     }
   }
   set_types(text, header);
-  if (header.data != "ascii" && header.data != "binary") text.refuse("DATA must be ascii or binary");
+  if (header.data != "ascii" && header.data != "binary" && header.data != kCompressed)
+    text.refuse("DATA must be ascii, binary or binary_compressed");
   if (header.height > 0 && header.width > kMaxPcdPoints / header.height) text.refuse("WIDTH x HEIGHT is too large");
   const std::int64_t points = header.width * header.height;
   if (header.points.value_or(points) != points)
@@ -101,9 +108,41 @@ PcdHeader read_pcd_header(FileText& text) {
   return header;
 }
 
+/// Returns the rows of compressed data: two sizes, before and after LZF, then the values, column after column.
+std::string decompressed_rows(const FileText& text, const PcdHeader& header) {
+  constexpr std::size_t kMaxRatio = 88;  // of LZF: 264 bytes from 3
+  const std::string_view rest = text.rest();
+  std::array<std::uint32_t, 2> sizes{};
+  if (rest.size() < sizeof sizes) throw InputError(fmt::format("{}: ends too early for compressed data", text.file()));
+  std::memcpy(sizes.data(), rest.data(), sizeof sizes);
+  const auto [packed_bytes, bytes] = sizes;
+  std::size_t row_bytes = 0;
+  for (const PointColumn& column : header.columns) row_bytes += column.count * bytes_of(column.type);
+  const auto num_points = static_cast<std::size_t>(header.width * header.height);
+  if (bytes != num_points * row_bytes) {
+    throw InputError(fmt::format("{}: has {} bytes of compressed data, {} points of {} bytes need {}", text.file(),
+                                 bytes, num_points, row_bytes, num_points * row_bytes));
+  }
+  if (packed_bytes > rest.size() - sizeof sizes || bytes > kMaxRatio * packed_bytes)
+    throw InputError(fmt::format("{}: ends too early for compressed data", text.file()));
+  std::string values(bytes, '\0');
+  if (bytes > 0 && lzf_decompress(rest.data() + sizeof sizes, packed_bytes, values.data(), bytes) != bytes)
+    throw InputError(fmt::format("{}: the compressed data are invalid", text.file()));
+  std::string rows(bytes, '\0');
+  const char* from = values.data();
+  std::size_t begin = 0;  // of the column within a row
+  for (const PointColumn& column : header.columns) {
+    const std::size_t width = column.count * bytes_of(column.type);
+    for (std::size_t i = 0; i < num_points; ++i, from += width) std::copy_n(from, width, &rows[i * row_bytes + begin]);
+    begin += width;
+  }
+  return rows;
+}
+
 std::vector<ScannerPoint> read_pcd_points(const std::filesystem::path& file, PointShift* shift) {
   FileText text(file);
   PcdHeader header = read_pcd_header(text);
+  if (header.data == kCompressed) text.replace_rest(decompressed_rows(text, header));
   PointTable table(text, std::move(header.columns), static_cast<std::size_t>(header.width * header.height), shift);
   std::vector<ScannerPoint> points = header.data == "ascii" ? table.read_ascii() : table.read_binary();
   table.expect_end();

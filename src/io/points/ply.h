@@ -9,7 +9,7 @@
 /// Point clouds in PLY, the Stanford triangle format (G. Turk, 1994).
 namespace patrol::io {
 
-struct PointShift;  // io/points/point_table.h
+struct PointShift;  // io/points/point_collector.h
 
 /// Writes binary little-endian PLY: x, y, z in meters and intensity, as floats. `comment` is one line.
 void save_ply(const std::filesystem::path& file, const std::vector<ScannerPoint>& points,

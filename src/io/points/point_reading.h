@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -17,13 +18,15 @@ namespace patrol::io {
 struct RelativePoints {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< in the frame of the file
   std::vector<ScannerPoint> points;                  ///< position minus `origin`; all values are finite
-  std::size_t num_dropped = 0;                       ///< number of points of the file that are not finite
+  std::size_t num_dropped = 0;  ///< number of points of the file that are not finite, noise or withheld
+  std::string columns = {};     ///< sentence about the columns of a text that does not name them; else empty
   double step = 0.0;  ///< distance of neighboring coordinates at `origin`, if the file has floats of 32 bits; else 0
 };
 
-/// Reads a PLY or PCD file, by its extension, and drops points that are not finite. `origin`: in the frame of the file;
-/// `unit_m`: meters per unit. Without an origin, it is zero if the first finite point is within 10 km of zero on each
-/// axis, else that point rounded to 100 m. Throws InputError for an invalid file or another extension.
+/// Reads a file by its extension (PLY, PCD, LAS or text) and drops points that are not finite, noise or withheld.
+/// `origin`: in the frame of the file; `unit_m`: meters per unit. Without an origin, it is zero if the first finite
+/// point is within 10 km of zero on each axis, else that point rounded to 100 m. Throws InputError for an invalid file
+/// or another extension.
 RelativePoints load_points(const std::filesystem::path& file, const std::optional<Eigen::Vector3d>& origin = {},
                            double unit_m = 1.0);
 

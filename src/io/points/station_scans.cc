@@ -9,8 +9,8 @@
 #include "io/files/atomic_file.h"
 #include "io/json/json_object.h"
 #include "io/points/ply.h"
+#include "io/points/point_collector.h"
 #include "io/points/point_reading.h"
-#include "io/points/point_table.h"
 
 namespace patrol::io {
 namespace {

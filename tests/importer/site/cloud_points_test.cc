@@ -125,7 +125,7 @@ TEST(CloudSite, PointsThatAreNotFiniteAreLeftOut) {
   points[2000].y = std::numeric_limits<float>::infinity();
   io::save_pcd(folder / "room.pcd", points);
   const ImportedSite site = import_site({.file = folder / "room.pcd", .name = "room"});
-  EXPECT_EQ(assumption(site, "invalid points"), "3 points are not finite: left out");
+  EXPECT_EQ(assumption(site, "invalid points"), "3 points are not finite, noise or withheld: left out");
 }
 
 TEST(CloudSite, ScaleAndUpAxisApply) {
@@ -146,7 +146,8 @@ TEST(CloudSite, BrokenFilesAreRefusedInOneLine) {
   EXPECT_THAT(complaint_about("two.ply", ply_text({{0, 0, 0, 0}, {5, 0, 0, 0}, {0, 9, 0, 0}}, {0, 0, 0})),
               testing::HasSubstr("the points form no surface"));
   EXPECT_THAT(complaint_about("text.pcd", "hello\n"), testing::HasSubstr("is not a line of a PCD header"));
-  EXPECT_THAT(complaint_about("cloud.las", "LASF"), testing::HasSubstr("extension of a site file must be one of"));
+  EXPECT_THAT(complaint_about("cloud.las", "LASF"), testing::HasSubstr("cloud.las: is not a LAS file"));
+  EXPECT_THAT(complaint_about("cloud.e57", "ASTM"), testing::HasSubstr("extension of a site file must be one of"));
 }
 
 }  // namespace

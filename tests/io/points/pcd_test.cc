@@ -61,10 +61,43 @@ TEST(Pcd, FiguresAreRead) {
               {{1, 2, 3, 0}, {-0.5F, 0, 2e-3F, 0}});
 }
 
+/// Compressed data of two points: x, y, z as floats, then an intensity of two bytes, column after column.
+std::string two_compressed_points() {
+  const std::string values = bytes(1.0F) + bytes(4.0F) + bytes(2.0F) + bytes(5.0F) + bytes(3.0F) + bytes(6.0F) +
+                             bytes(std::uint16_t{7}) + bytes(std::uint16_t{8});
+  const auto size = static_cast<std::uint32_t>(values.size());
+  // LZF: literal runs begin with their length minus one.
+  const std::string packed = '\x0F' + values.substr(0, 16) + '\x0B' + values.substr(16);
+  return bytes(size + 2) + bytes(size) + packed;
+}
+
+const std::string kTwoCompressed =
+    header("WIDTH 2\nHEIGHT 1\n", "binary_compressed", "FIELDS x y z intensity\nSIZE 4 4 4 2\nTYPE F F F U\n");
+
+TEST(Pcd, CompressedDataHaveTheirColumnsOneAfterTheOther) {
+  expect_same(load(kTwoCompressed + two_compressed_points()), {{1, 2, 3, 7}, {4, 5, 6, 8}});
+  EXPECT_TRUE(load(header("WIDTH 0\nHEIGHT 1\n", "binary_compressed") + std::string(8, '\0')).empty());
+}
+
+TEST(Pcd, InvalidCompressedDataAreRefused) {
+  const std::string data = two_compressed_points();
+  EXPECT_EQ(complaint_about(kTwoCompressed + data.substr(0, 7)), "c.pcd: ends too early for compressed data");
+  EXPECT_EQ(complaint_about(kTwoCompressed + data.substr(0, 20)), "c.pcd: ends too early for compressed data");
+  EXPECT_EQ(complaint_about(kTwoCompressed + bytes(std::uint32_t{30}) + bytes(std::uint32_t{27}) + data.substr(8)),
+            "c.pcd: has 27 bytes of compressed data, 2 points of 14 bytes need 28");
+  std::string backward = data;
+  backward[8] = '\x20';  // a copy of bytes before the first
+  EXPECT_EQ(complaint_about(kTwoCompressed + backward), "c.pcd: the compressed data are invalid");
+  const std::string huge = header("WIDTH 300000000\nHEIGHT 1\n", "binary_compressed");
+  EXPECT_EQ(complaint_about(huge + bytes(std::uint32_t{4}) + bytes(std::uint32_t{3'600'000'000}) + "abcd"),
+            "c.pcd: ends too early for compressed data");
+}
+
 TEST(Pcd, WhatIsNoPcdIsRefusedWithItsLine) {
   EXPECT_EQ(complaint_about("ply\n"), "c.pcd:1: is not a line of a PCD header");
   EXPECT_EQ(complaint_about("VERSION 0.7\n"), "c.pcd:1: the header has no line DATA");
-  EXPECT_EQ(complaint_about(header(kOnePoint, "binary_compressed")), "c.pcd:11: DATA must be ascii or binary");
+  EXPECT_EQ(complaint_about(header(kOnePoint, "binary_zip")),
+            "c.pcd:11: DATA must be ascii, binary or binary_compressed");
   EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y\nSIZE 4 4\nTYPE F F\n")),
             "c.pcd:10: the points have no z");
   EXPECT_EQ(complaint_about(header(kOnePoint, "ascii", "FIELDS x y z\nSIZE 4 4\nTYPE F F F\n")),

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/error.h"
 #include "io/points/pcd.h"
 #include "tests/io/cloud_samples.h"
 
@@ -101,7 +100,16 @@ TEST(PointReading, ScansAreRelativeToTheFirstPose) {
   EXPECT_EQ(relative.scans[0].points[0].x, 13.0f);
 }
 
-TEST(PointReading, OtherExtensionIsRefused) { EXPECT_THROW(load_points("cloud.las"), InputError); }
+TEST(PointReading, TheExtensionSaysTheFormat) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.xyz", "a.pts", "a.ASC", "a.csv", "a.txt"}) {
+    write_bytes(folder / name, "1 2 3 4\n");
+    EXPECT_EQ(load_points(folder / name).points.at(0).intensity, 4.0F) << name;
+  }
+  EXPECT_EQ(complaint("c.las", "1 2 3", [](const auto& file) { load_points(file); }), "c.las: is not a LAS file");
+  EXPECT_EQ(complaint("c.e57", "1 2 3", [](const auto& file) { load_points(file); }),
+            "c.e57: extension of a point cloud must be .ply, .pcd, .las, .xyz, .pts, .asc, .csv, .txt");
+}
 
 }  // namespace
 }  // namespace patrol::io::point_reading_test
