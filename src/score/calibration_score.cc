@@ -124,6 +124,15 @@ std::optional<double> value_of(const std::vector<std::pair<std::string, double>>
   return found->second;
 }
 
+/// Yaw of the lidar about the vertical of the body; the angles of `as_built` are about the axes of its nominal mount.
+std::optional<double> lidar_yaw_rad(const AsBuiltTruth& as_built, const Eigen::Quaterniond& R_body_lidar) {
+  const std::optional<double> yaw_rad = value_of(as_built.values, name_of(CalibrationParameter::kLidarYaw));
+  if (!yaw_rad) return std::nullopt;
+  const Eigen::Vector3d angles_rad(value_of(as_built.values, "lidar.roll_rad").value_or(0.0),
+                                   value_of(as_built.values, "lidar.pitch_rad").value_or(0.0), *yaw_rad);
+  return (R_body_lidar * angles_rad).z();
+}
+
 }  // namespace
 
 bool ScoredParameter::holds() const { return std::abs(error()) <= kQuantile95 * std::hypot(std, truth_std); }
@@ -145,7 +154,7 @@ std::vector<TrueParameter> calibration_truth(const CalibrationRecord& record, co
     add(kLidarTimeOffset, *offset_s + *drift * to_seconds(stamp) + fault_s);
   }
   add(kLidarClockDrift, drift);
-  add(kLidarYaw, drawn(name_of(kLidarYaw)));
+  add(kLidarYaw, lidar_yaw_rad(record.as_built, references.R_body_lidar));
   for (const auto& [name, value] : record.as_built.values)
     if (name.starts_with("uwb.")) truth.push_back({.name = name, .value = value, .drawn = std::nullopt});
 

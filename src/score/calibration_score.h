@@ -38,7 +38,8 @@ struct CalibrationRecord {
 
 /// Knowledge about a run that its log does not contain.
 struct CalibrationReferences {
-  Eigen::Quaterniond R_body_imu = Eigen::Quaterniond::Identity();  ///< nominal mount
+  Eigen::Quaterniond R_body_imu = Eigen::Quaterniond::Identity();    ///< nominal mount
+  Eigen::Quaterniond R_body_lidar = Eigen::Quaterniond::Identity();  ///< nominal mount
   /// Offset that faults add to the lidar's stamps at an instant, s; empty without faults.
   std::function<double(Time)> lidar_clock_fault_s;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -63,8 +64,9 @@ TEST(CalibrationTruth, FitsTheScalesOfOdometryAndTheErrorsOfTheGyro) {
 TEST(CalibrationTruth, EvaluatesTheTimeOffsetAtTheInstantOfTheEstimate) {
   const Ride ride(1.0, 1.0, 0.0, 1.0);
   EXPECT_NEAR(ride.truth().at("lidar.time_offset_s"), 0.0026, 1e-12) << "2 ms and 60 s of 10 ppm";
-  const auto with_fault =
-      ride.truth({.R_body_imu = Eigen::Quaterniond::Identity(), .lidar_clock_fault_s = [](Time) { return -0.02; }});
+  CalibrationReferences references;
+  references.lidar_clock_fault_s = [](Time) { return -0.02; };
+  const auto with_fault = ride.truth(references);
   EXPECT_NEAR(with_fault.at("lidar.time_offset_s"), -0.0174, 1e-12);
   EXPECT_EQ(with_fault.at("lidar.clock_drift_s_per_s"), 1e-5);
 }
@@ -73,6 +75,21 @@ TEST(CalibrationTruth, TakesYawAndAntennaDelaysAsDrawn) {
   const auto truth = Ride(1.0, 1.0, 0.0, 1.0).truth();
   EXPECT_EQ(truth.at("lidar.yaw_rad"), 0.004);
   EXPECT_EQ(truth.at("uwb.anchor_3.delay_m"), -0.07);
+}
+
+TEST(CalibrationTruth, TheYawOfATiltedLidarIsAboutTheVerticalOfTheBody) {
+  Ride ride(1.0, 1.0, 0.0, 1.0);
+  ride.as_built.values.emplace_back("lidar.roll_rad", 0.001);
+  ride.as_built.values.emplace_back("lidar.pitch_rad", 0.002);
+  const auto yaw_rad = [&](double angle_rad, const Eigen::Vector3d& axis) {
+    CalibrationReferences references;
+    references.R_body_lidar = Eigen::AngleAxisd(angle_rad, axis);
+    return ride.truth(references).at("lidar.yaw_rad");
+  };
+  EXPECT_EQ(yaw_rad(0.0, Eigen::Vector3d::UnitX()), 0.004);
+  EXPECT_NEAR(yaw_rad(std::numbers::pi, Eigen::Vector3d::UnitX()), -0.004, 1e-15);
+  EXPECT_NEAR(yaw_rad(std::numbers::pi, Eigen::Vector3d::UnitZ()), 0.004, 1e-15);
+  EXPECT_NEAR(yaw_rad(std::numbers::pi / 2.0, Eigen::Vector3d::UnitX()), 0.002, 1e-15) << "its y axis points up";
 }
 
 TEST(CalibrationTruth, LeavesOutTheSegmentOfAKidnap) {

@@ -27,6 +27,12 @@ std::vector<score::WaterGroundTruth> true_waters(const Scenario& scenario) {
   return bodies;
 }
 
+/// Rotation of the lidar in body; identity for a robot without a lidar.
+Eigen::Quaterniond lidar_rotation(const RobotDescription& robot) {
+  const auto lidar = robot.T_body_sensor.find("lidar");
+  return lidar == robot.T_body_sensor.end() ? Eigen::Quaterniond::Identity() : lidar->second.rotation;
+}
+
 /// Sum of the clock offsets by faults of the lidar.
 double lidar_clock_fault_s(const std::vector<sim::FaultSettings>& faults, Time now) {
   double offset_s = 0.0;
@@ -58,6 +64,7 @@ score::RunReferences run_references(const Scenario& scenario, const ScenarioFile
       .p_body_antenna = {},
       .kidnaps = {},
       .calibration = {.R_body_imu = files.robot.T_body("imu").rotation,
+                      .R_body_lidar = lidar_rotation(files.robot),
                       .lidar_clock_fault_s =
                           [faults = scenario.faults](Time now) { return lidar_clock_fault_s(faults, now); }},
       .localizability = std::move(localizability)};
