@@ -1,24 +1,27 @@
 #include "app/check/check_pictures.h"
 
-#include <cmath>
-
 #include "app/common/temporary_folder.h"
 #include "io/files/atomic_file.h"
 #include "render/scene/antialias.h"
 #include "render/scene/scene_painter.h"
+#include "sim/geom_box.h"
 #include "sim/model_assembly.h"
+#include "sim/robot_model.h"
 
 namespace patrol::app {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 400;
 
-/// View from the front left, at a distance that shows the whole robot.
-render::View view_of(const CheckRobot& robot, const PictureScene& scene) {
-  const double size_m = robot.description.outline_radius_m();
-  const Eigen::Vector3d p_m = scene.T_world_body.position;
-  const Eigen::Vector3d eye_m = p_m + size_m * Eigen::Vector3d(1.9, 3.2, 1.5);
-  return render::look_at(eye_m, p_m + Eigen::Vector3d(0.0, 0.0, 0.1 * size_m));
+/// Returns the box around the robot, axis-aligned in world.
+Eigen::AlignedBox3d robot_box(const mjModel& view, const mjData& data) {
+  Eigen::AlignedBox3d box;
+  for (int geom = 0; geom < view.ngeom; ++geom) {
+    const int group = view.geom_group[geom];
+    if (group == sim::kGroupRobotVisual || group == sim::kGroupRobotCollision)
+      box.extend(sim::geom_box(view, data, geom));
+  }
+  return box;
 }
 
 CheckPicture render_scene(const CheckRobot& robot, const PictureScene& scene, const std::filesystem::path& folder) {
@@ -31,7 +34,8 @@ CheckPicture render_scene(const CheckRobot& robot, const PictureScene& scene, co
   renderer.set_state(scene.state);
   render::Frame frame(kWidth, kHeight);
   std::vector<float> depth;
-  renderer.draw(view_of(robot, scene), frame, depth);
+  const Eigen::Vector3d from_front_left(1.9, 3.2, 1.5);
+  renderer.draw(render::look_at(robot_box(*model.view, renderer.data()), from_front_left), frame, depth);
   render::smooth_edges(frame);
   return {.png = render::to_png(frame), .caption = scene.caption};
 }

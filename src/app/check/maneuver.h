@@ -37,7 +37,6 @@ std::vector<Maneuver> maneuvers_of(const CheckRobot& robot);
 struct PictureScene {
   std::string world_mjcf;
   SimState state;
-  Pose3 T_world_body;
   std::string caption;
 };
 

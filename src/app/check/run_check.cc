@@ -27,10 +27,8 @@ ManeuverResult drive(const CheckRobot& robot, const Maneuver& maneuver, const st
     if (!drive || !maneuver.picture_ahead_m) return;
     const DriveSample& last = drive->record().samples.back();
     if (last.T_start_center.x > *maneuver.picture_ahead_m && result.picture) return;
-    result.picture = PictureScene{.world_mjcf = maneuver.world.mjcf,
-                                  .state = drive->state(),
-                                  .T_world_body = last.T_world_body,
-                                  .caption = maneuver.title};
+    result.picture =
+        PictureScene{.world_mjcf = maneuver.world.mjcf, .state = drive->state(), .caption = maneuver.title};
   };
   drive.emplace(robot, world_xml, maneuver.settle_s, on_sample);
   for (const DriveSegment& segment : maneuver.segments) drive->run(segment);

@@ -38,6 +38,13 @@ View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus) {
   return view;
 }
 
+View look_at(const Eigen::AlignedBox3d& box_m, const Eigen::Vector3d& to_eye) {
+  constexpr double kMargin = 1.1;
+  const double radius_m = 0.5 * box_m.diagonal().norm();
+  const double distance_m = kMargin * radius_m / std::sin(0.5 * View{}.field_of_view_rad);
+  return look_at(box_m.center() + distance_m * to_eye.normalized(), box_m.center());
+}
+
 View look_down(const Eigen::Vector3d& focus, double height_m, const FreeDistance& free_distance) {
   constexpr double kCut = 0.6;  // fraction of the roof's height at which it is cut
   View view = look_at(focus + height_m * Eigen::Vector3d::UnitZ(), focus);

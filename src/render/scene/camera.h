@@ -37,6 +37,10 @@ struct View {
 /// View from `eye` to `focus` with the default field of view. The horizon is level; north is up in a vertical view.
 View look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& focus);
 
+/// View of the center of a box in world, m, from the direction `to_eye`, of any length, at a distance that shows the
+/// whole box in a picture that is not higher than wide.
+View look_at(const Eigen::AlignedBox3d& box_m, const Eigen::Vector3d& to_eye);
+
 /// Converts a view to MuJoCo's camera.
 mjvGLCamera gl_camera(const View& view);
 

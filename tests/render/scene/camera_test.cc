@@ -61,6 +61,25 @@ TEST(Projector, AgreesWithMuJoCoWithinAPixelAndOnDepthWithinAMillimetre) {
   EXPECT_NEAR(nearest, expected->distance_m - 0.05, 0.002);
 }
 
+TEST(LookAt, ShowsATallALongAndAWideBoxAsAWholeAtHalfOfTheHeightOfThePictureOrMore) {
+  constexpr int kWidth = 640, kHeight = 400;
+  for (const Eigen::Vector3d& size_m :
+       {Eigen::Vector3d(0.4, 0.3, 1.7), {2.5, 0.3, 0.2}, {0.3, 2.5, 0.2}, {1.0, 1.0, 1.0}}) {
+    SCOPED_TRACE(size_m.transpose());
+    const Eigen::Vector3d low_m(3.0, -2.0, 0.1);
+    const Eigen::AlignedBox3d box_m(low_m, low_m + size_m);
+    const Projector projector(look_at(box_m, {1.9, 3.2, 1.5}), kWidth, kHeight);
+    Eigen::AlignedBox2d picture;
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto projected = projector.project(box_m.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+      ASSERT_TRUE(projected);
+      picture.extend(projected->pixel);
+    }
+    EXPECT_TRUE(Eigen::AlignedBox2d(Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(kWidth, kHeight)).contains(picture));
+    EXPECT_GT(picture.sizes().maxCoeff(), 0.5 * kHeight);
+  }
+}
+
 TEST(CameraRigTest, ChasesFromBehindAndAbove) {
   CameraRig rig(CameraKind::kChase);
   const View view = rig.follow({{10.0, 5.0, 0.3}, quaternion_from_yaw(std::numbers::pi / 2.0)}, 0.05);
