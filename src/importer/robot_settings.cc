@@ -80,18 +80,14 @@ std::string wheel_settings(const NormalizedRobot& robot) {
   return text;
 }
 
-/// Returns the settings of a robot with legs. Gait and gains are scaled when the robot is loaded.
+/// Returns the settings of a robot with legs. Gait, gains and speeds are scaled when the robot is loaded.
 std::string leg_settings(const NormalizedRobot& robot) {
-  // Froude number of the default speed with legs of 0.426 m.
-  const double planner_speed_mps = rounded_down(0.8 * std::sqrt(robot.leg_m / 0.426), 0.01, 0.05, 1.5);
   std::string text = "  hall: {enabled: false}\n";
   text += "stack:\n";
   text += "  odometry_source: legged\n";
   text += scan_settings(robot);
   text += "  navigation:\n";
   text += "    kinematics: omnidirectional\n";
-  text += "    local_planner:\n";
-  text += fmt::format("      dwa: {{max_speed_mps: {:.2f}}}\n", planner_speed_mps);
   return text;
 }
 

@@ -97,6 +97,8 @@ RobotProfile profile_of_size(const RobotDescription& robot) {
   RobotProfile profile;
   if (robot.legs.empty()) return profile;
   profile.locomotion = sim::scaled_locomotion(robot);
+  profile.stack.navigation.local_planner.dwa.max_speed_mps *=
+      profile.locomotion.max_forward_mps / sim::LocomotionSettings{}.max_forward_mps;
   const double force = sim::leg_scale(robot).force;
   localize::LeggedOdometrySettings& odometry = profile.stack.odometry.legged;
   for (double* force_n : {&odometry.contact_on_force_n, &odometry.contact_off_force_n, &odometry.full_weight_force_n,

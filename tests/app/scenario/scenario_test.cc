@@ -209,6 +209,30 @@ TEST(Scenario, ALeggedRobotHasAGaitAndThresholdsOfItsSizeWithAndWithoutAProfile)
   EXPECT_EQ(default_scenario("profiled", root.path()).locomotion.swing_clearance_m, 0.1);
 }
 
+TEST(Scenario, TheStackPlansNoSpeedsThatSlowJointsDoNotReach) {
+  const TemporaryFolder root;
+  const test::UrdfQuadruped fast;
+  test::UrdfQuadruped slow;
+  slow.speed_radps = 0.3 * fast.speed_radps;
+  for (const std::string name : {"fast", "slow", "given"}) {
+    std::filesystem::create_directories(root / "models" / name);
+    test::write_bytes(root / "models" / name / (name + ".urdf"), (name == "fast" ? fast : slow).text());
+  }
+  test::write_bytes(root / "models/given/given.yaml",
+                    "stack: {navigation: {local_planner: {dwa: {max_speed_mps: 0.5}}}}\n");
+  const auto speed_mps = [&](const char* name) {
+    return default_scenario(name, root.path()).stack.navigation.local_planner.dwa.max_speed_mps;
+  };
+  const auto ratio = [&](const char* name) {
+    return speed_mps(name) / default_scenario(name, root.path()).locomotion.max_forward_mps;
+  };
+  const double tuned = plan::DwaSettings{}.max_speed_mps / sim::LocomotionSettings{}.max_forward_mps;
+  EXPECT_NEAR(ratio("fast"), tuned, 1e-9);
+  EXPECT_NEAR(ratio("slow"), tuned, 1e-9);
+  EXPECT_LT(speed_mps("slow"), 0.7 * speed_mps("fast"));
+  EXPECT_EQ(speed_mps("given"), 0.5);
+}
+
 TEST(Scenario, TheLightIsAsTheWorldHasItUnlessOneDimsIt) {
   const std::filesystem::path file = kSource / "worlds/tunnel/scenarios/docking.yaml";
   EXPECT_EQ(load_scenario(file).light.intensity, 1.0);
