@@ -54,7 +54,7 @@ Packages::Packages(std::map<std::string, std::filesystem::path> given, const std
 }
 
 std::optional<std::filesystem::path> Packages::find(const std::string& package) const {
-  if (const auto found = given_.find(package); found != given_.end()) return std::filesystem::absolute(found->second);
+  if (const auto found = given(package)) return found;
   std::error_code error;
   for (std::filesystem::path folder = folder_; !folder.empty(); folder = folder.parent_path()) {
     if (folder.filename() == package || package_name(folder) == package) return folder;
@@ -88,14 +88,29 @@ std::filesystem::path Packages::resolve(const std::string& uri) const {
   return folder_ / uri;
 }
 
-std::optional<std::filesystem::path> Packages::above(const std::filesystem::path& path) const {
-  std::error_code error;
-  std::filesystem::path folder = folder_;
-  for (int i = 0; i <= kMaxFoldersAbove; ++i, folder = folder.parent_path()) {
-    if (std::filesystem::is_regular_file(folder / path, error)) return folder / path;
-    if (folder == folder.root_path()) break;
+std::optional<std::filesystem::path> Packages::given(const std::string& package) const {
+  const auto found = given_.find(package);
+  return found == given_.end() ? std::nullopt : std::optional(std::filesystem::absolute(found->second));
+}
+
+std::vector<std::filesystem::path> Packages::with_folders_above(std::filesystem::path folder) {
+  std::vector<std::filesystem::path> folders = {folder};
+  for (int i = 0; i < kMaxFoldersAbove && folder != folder.root_path(); ++i) {
+    folder = folder.parent_path();
+    folders.push_back(folder);
   }
-  return std::nullopt;
+  return folders;
+}
+
+std::vector<std::filesystem::path> Packages::ends_of(const std::string& uri) {
+  std::vector<std::filesystem::path> parts, ends;
+  for (const auto& part : tail_of(uri)) parts.push_back(part);
+  for (std::size_t first = 0; first < parts.size() && (first == 0 || first + 1 < parts.size()); ++first) {
+    std::filesystem::path end;
+    for (std::size_t i = first; i < parts.size(); ++i) end /= parts[i];
+    ends.push_back(end);
+  }
+  return ends;
 }
 
 std::optional<std::filesystem::path> Packages::with_name(const std::string& name) const {
@@ -130,16 +145,14 @@ std::filesystem::path Packages::find_mesh(const std::string& uri) const {
   } catch (const InputError& refused) {
     unknown_package = refused.what();
   }
-  // The whole path behind the scheme, then without its first folders, at last the name alone.
-  std::vector<std::filesystem::path> parts;
-  for (const auto& part : tail_of(uri)) parts.push_back(part);
-  for (std::size_t first = 0; first < parts.size() && (first == 0 || first + 1 < parts.size()); ++first) {
-    std::filesystem::path end;
-    for (std::size_t i = first; i < parts.size(); ++i) end /= parts[i];
-    if (const auto found = above(end)) return *found;
+  const std::vector<std::filesystem::path> ends = ends_of(uri);
+  for (const std::filesystem::path& end : ends) {
+    for (const std::filesystem::path& folder : with_folders_above(folder_)) {
+      if (std::filesystem::is_regular_file(folder / end, error)) return folder / end;
+    }
   }
-  if (!parts.empty()) {
-    if (const auto found = with_name(parts.back().string())) return *found;
+  if (!ends.empty()) {
+    if (const auto found = with_name(ends.back().filename().string())) return *found;
   }
   if (!unknown_package.empty()) throw InputError(unknown_package);
   throw MeshNotFound(

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/error.h"
 
@@ -33,15 +34,24 @@ class Packages {
   /// if it is in no package). Throws InputError without file and line if there is none.
   std::filesystem::path find_mesh(const std::string& uri) const;
 
+  /// Returns the path of a URI behind its scheme, package, root and leading "..", then without its first folders, down
+  /// to two parts.
+  static std::vector<std::filesystem::path> ends_of(const std::string& uri);
+
+  /// Returns a folder and the three above it.
+  static std::vector<std::filesystem::path> with_folders_above(std::filesystem::path folder);
+
+  /// Returns the folder that is given for a package.
+  std::optional<std::filesystem::path> given(const std::string& package) const;
+
   /// Returns a path relative to the folder of the file, for messages.
   std::string relative(const std::filesystem::path& path) const;
 
  private:
-  std::optional<std::filesystem::path> above(const std::filesystem::path& path) const;
   std::optional<std::filesystem::path> with_name(const std::string& name) const;
 
-  std::map<std::string, std::filesystem::path> given_;
-  std::filesystem::path folder_;  ///< of the file
+  std::map<std::string, std::filesystem::path> given_;  ///< by name
+  std::filesystem::path folder_;                        ///< of the file
 };
 
 }  // namespace patrol::importer

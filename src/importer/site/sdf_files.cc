@@ -55,6 +55,12 @@ SdfFolder::~SdfFolder() {
 
 SdfFiles::SdfFiles(const std::filesystem::path& world, const SdfModels& models) : models_(models) {
   add(world, SdfContent::kWorld);
+  if (missing_.empty()) return;
+  std::vector<std::string> uris;
+  for (const Missing& missing : missing_) {
+    if (std::find(uris.begin(), uris.end(), missing.uri) == uris.end()) uris.push_back(missing.uri);
+  }
+  throw InputError(fmt::format("{}: <include>: {}", missing_.front().location, io::on_one_line(unknown_models(uris))));
 }
 
 const SdfFiles::File* SdfFiles::find(const std::filesystem::path& path) const {
@@ -67,8 +73,9 @@ const SdfFiles::File& SdfFiles::add(const std::filesystem::path& path, SdfConten
   open_.push_back(path);
   for (tinyxml2::XMLElement* include : file.source->includes()) {
     // Without <uri>, libsdformat refuses it.
-    if (tinyxml2::XMLElement* uri = include->FirstChildElement("uri"))
-      uri->SetText(copy_of(*file.source, *include, file.num_models).c_str());
+    if (tinyxml2::XMLElement* uri = include->FirstChildElement("uri")) {
+      if (const auto copy = copy_of(*file.source, *include, file.num_models)) uri->SetText(copy->c_str());
+    }
     if (file.num_models > kMaxModels)
       file.source->fail(*include, fmt::format("{} models: must be at most {}", file.num_models, kMaxModels));
   }
@@ -78,45 +85,49 @@ const SdfFiles::File& SdfFiles::add(const std::filesystem::path& path, SdfConten
   return files_.emplace_back(std::move(file));
 }
 
-std::filesystem::path SdfFiles::copy_of(const SdfSource& source, tinyxml2::XMLElement& include,
-                                        std::size_t& num_models) {
+/// Returns the file for libsdformat; none: the model is not found.
+std::optional<std::filesystem::path> SdfFiles::copy_of(const SdfSource& source, tinyxml2::XMLElement& include,
+                                                       std::size_t& num_models) {
   // libsdformat reads the text of these elements without a check.
   for (const char* name : {"uri", "name", "static", "placement_frame"}) {
     const tinyxml2::XMLElement* child = include.FirstChildElement(name);
     if (child != nullptr && child->GetText() == nullptr) source.fail(*child, "is empty");
   }
   const tinyxml2::XMLElement& uri = *include.FirstChildElement("uri");
-  const std::filesystem::path path = resolve(source, uri);
-  if (std::find(open_.begin(), open_.end(), path) != open_.end())
+  const auto path = resolve(source, uri);
+  if (!path) return std::nullopt;
+  if (std::find(open_.begin(), open_.end(), *path) != open_.end())
     source.fail(include, fmt::format("\"{}\": the model includes itself", uri.GetText()));
-  const File* included = find(path);
-  if (included == nullptr && is_urdf(path)) return path;
-  if (included == nullptr) included = &add(path, SdfContent::kModel);
+  const File* included = find(*path);
+  if (included == nullptr && is_urdf(*path)) return path;
+  if (included == nullptr) included = &add(*path, SdfContent::kModel);
   num_models += included->num_models;
   return included->copy;
 }
 
-std::filesystem::path SdfFiles::resolve(const SdfSource& source, const tinyxml2::XMLElement& element) {
+std::optional<std::filesystem::path> SdfFiles::resolve(const SdfSource& source, const tinyxml2::XMLElement& element) {
   const auto fail = [&](const std::string& what) {
     return input_error(source.file().string(), element.GetLineNum(), io::on_one_line(what));
   };
   const std::string uri = trimmed(element.GetText());
-  if (is_of_network(uri))
-    throw fail("models of a network are not supported: download it and give its folder with --package: " + uri);
   auto path = models_.find_uri(uri, std::filesystem::absolute(source.file()).parent_path());
   std::error_code error;
-  if (!path && uri == std::string(kModelScheme) + model_name_of(uri)) path = built_in(model_name_of(uri));
-  if (!path || !std::filesystem::exists(*path, error)) {
+  if (!path && uri == std::string(kModelScheme) + name_in(uri)) path = built_in(name_in(uri));
+  if (!is_of_network(uri) && (!path || !std::filesystem::exists(*path, error))) {
     // The folders that libsdformat searches: the working directory and those of SDF_PATH.
     if (const std::string found = sdf::findFile(uri, true, false); !found.empty()) path = found;
   }
-  if (!path) throw fail("<include>: " + unknown_model(model_name_of(uri)));
+  if (!path && !name_in(uri).empty()) {
+    missing_.push_back({fmt::format("{}:{}", source.file().string(), element.GetLineNum()), uri});
+    return std::nullopt;
+  }
+  if (!path) throw fail(fmt::format("<include>: {}: names no model", uri));
   try {
     if (std::filesystem::is_directory(*path, error)) path = sdf_file_of_model(*path);
   } catch (const InputError& unknown) {
     throw fail(fmt::format("<include>: {}", unknown.what()));
   }
-  if (!std::filesystem::is_regular_file(*path, error)) throw fail(fmt::format("<include>: {}: file not found", uri));
+  if (!std::filesystem::is_regular_file(*path, error)) throw fail("<include>: " + unknown_file(uri));
   return std::filesystem::absolute(*path).lexically_normal();
 }
 

@@ -40,8 +40,8 @@ class SdfFiles {
   };
 
   /// `model://ground_plane` and `model://sun` are known without a folder. Throws InputError "file:line: ..." for what
-  /// SdfSource refuses, and for models that are not found, are of a network or include themselves, or are more than
-  /// 100,000.
+  /// SdfSource refuses, and for models that are not found or include themselves, or are more than 100,000. The error
+  /// about models that are not found names all of them.
   SdfFiles(const std::filesystem::path& world, const SdfModels& models);
 
   const File& world() const { return files_.back(); }
@@ -57,14 +57,22 @@ class SdfFiles {
  private:
   const File* find(const std::filesystem::path& path) const;
   const File& add(const std::filesystem::path& path, SdfContent content);
-  std::filesystem::path copy_of(const SdfSource& source, tinyxml2::XMLElement& include, std::size_t& num_models);
-  std::filesystem::path resolve(const SdfSource& source, const tinyxml2::XMLElement& uri);
+  /// Model that is not found.
+  struct Missing {
+    std::string location;  ///< "file:line"
+    std::string uri;
+  };
+
+  std::optional<std::filesystem::path> copy_of(const SdfSource& source, tinyxml2::XMLElement& include,
+                                               std::size_t& num_models);
+  std::optional<std::filesystem::path> resolve(const SdfSource& source, const tinyxml2::XMLElement& uri);
   std::optional<std::filesystem::path> built_in(const std::string& name);
 
   const SdfModels& models_;
   SdfFolder folder_;
   std::vector<File> files_;
   std::vector<std::filesystem::path> open_;  ///< files whose models are being read, outermost first
+  std::vector<Missing> missing_;
   std::vector<Assumption> rows_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdlib>
+#include <iterator>
 #include <sstream>
 #include <system_error>
 
@@ -10,6 +11,7 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "importer/site/sdf_source.h"
 #include "importer/source_reader.h"
 #include "io/files/one_line.h"
@@ -21,37 +23,82 @@ namespace {
 /// Variables of Gazebo Classic and of Gazebo with lists of folders of models, separated by colons.
 constexpr std::array kFolderVariables = {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH"};
 
-std::optional<std::filesystem::path> find_in_variables(const std::string& model) {
-  for (const char* variable : kFolderVariables) {
-    const char* folders = std::getenv(variable);
-    std::istringstream list(folders != nullptr ? folders : "");
-    for (std::string folder; std::getline(list, folder, ':');) {
-      std::error_code error;
-      const std::filesystem::path path = std::filesystem::path(folder) / model;
-      if (!folder.empty() && std::filesystem::is_directory(path, error)) return std::filesystem::absolute(path);
-    }
+/// Variable of Gazebo Classic with a list of folders of other files.
+constexpr const char* kFileVariable = "GAZEBO_RESOURCE_PATH";
+
+std::vector<std::filesystem::path> folders_of(const char* variable) {
+  std::vector<std::filesystem::path> folders;
+  const char* text = std::getenv(variable);
+  std::istringstream list(text != nullptr ? text : "");
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (!folder.empty()) folders.emplace_back(folder);
   }
-  return std::nullopt;
+  return folders;
+}
+
+std::vector<std::filesystem::path> folders_of_models() {
+  std::vector<std::filesystem::path> folders;
+  for (const char* variable : kFolderVariables) {
+    const std::vector<std::filesystem::path> more = folders_of(variable);
+    folders.insert(folders.end(), more.begin(), more.end());
+  }
+  if (const auto models = folder_at_home(".gazebo/models")) folders.push_back(*models);
+  return folders;
+}
+
+bool is_present(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
 }
 
 }  // namespace
 
-bool is_of_network(std::string_view uri) {
-  return uri.starts_with("http://") || uri.starts_with("https://") || uri.starts_with("fuel://");
+std::string name_in(const std::string& uri) {
+  if (uri.starts_with(kModelScheme)) {
+    const std::string rest = uri.substr(kModelScheme.size());
+    return rest.substr(0, rest.find('/'));
+  }
+  const auto model = fuel_model(uri);
+  return model ? model->name : std::string();
 }
 
-std::string model_name_of(std::string_view uri) {
-  const std::string_view rest = uri.substr(kModelScheme.size());
-  return std::string(rest.substr(0, rest.find('/')));
-}
-
-std::string unknown_model(const std::string& name) {
+std::string unknown_model(const std::string& uri) {
+  const std::string variables = fmt::format("{}", fmt::join(kFolderVariables, " or "));
+  if (is_of_network(uri))
+    return fmt::format(
+        "model \"{0}\" is not in the cache ~/.gz/fuel: download it, and give its folder with --package "
+        "\"{0}=FOLDER\" or the folder above it in {1}: {2}",
+        name_in(uri), variables, uri);
   return fmt::format("unknown model \"{0}\": give its folder with --package {0}=FOLDER, or the folder above it in {1}",
-                     name, fmt::join(kFolderVariables, " or "));
+                     name_in(uri), variables);
+}
+
+std::string unknown_models(const std::vector<std::string>& uris) {
+  if (uris.size() == 1) return unknown_model(uris.front());
+  std::vector<std::string> names;
+  bool has_network = false;
+  for (const std::string& uri : uris) {
+    names.push_back(name_in(uri));
+    has_network |= is_of_network(uri);
+  }
+  return fmt::format(
+      "{} unknown models: \"{}\": {}give the folder of each with --package NAME=FOLDER, or the folder "
+      "above them in {}",
+      uris.size(), fmt::join(names, "\", \""), has_network ? "download those of a network, and " : "",
+      fmt::join(kFolderVariables, " or "));
+}
+
+std::string unknown_file(const std::string& uri) {
+  return fmt::format(
+      "{}: file not found, also in the three folders above the file and above the world: put it there, or "
+      "name a folder in {}",
+      uri, kFileVariable);
 }
 
 SdfModels::SdfModels(const std::filesystem::path& world, const std::map<std::string, std::filesystem::path>& packages)
-    : world_(std::filesystem::absolute(world)), packages_(packages, world) {}
+    : world_(std::filesystem::absolute(world)), packages_(packages, world) {
+  for (const auto& [name, folder] : packages) lower_case_.emplace(to_lower(name), std::filesystem::absolute(folder));
+}
 
 std::optional<std::filesystem::path> SdfModels::find(const std::string& name) const {
   if (const auto found = packages_.find(name)) return found;
@@ -59,24 +106,62 @@ std::optional<std::filesystem::path> SdfModels::find(const std::string& name) co
   for (std::filesystem::path folder = world_.parent_path();; folder = folder.parent_path()) {
     const std::filesystem::path model = folder / "models" / name;
     if (std::filesystem::is_directory(model, error)) return model;
-    if (folder == folder.root_path()) return find_in_variables(name);
+    if (folder == folder.root_path()) break;
   }
+  for (const std::filesystem::path& folder : folders_of_models()) {
+    if (std::filesystem::is_directory(folder / name, error)) return std::filesystem::absolute(folder / name);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::filesystem::path> SdfModels::find(const FuelModel& model) const {
+  if (const auto given = lower_case_.find(to_lower(model.name)); given != lower_case_.end())
+    return version_folder(given->second, model).value_or(given->second);
+  for (const std::string& name : {model.name, to_lower(model.name)}) {
+    const auto found = find(name);
+    const auto version = found ? version_folder(*found, model) : std::nullopt;
+    if (version) return version;
+  }
+  return find_in_fuel_cache(model);
 }
 
 std::optional<std::filesystem::path> SdfModels::find_uri(const std::string& uri,
                                                          const std::filesystem::path& folder) const {
-  if (uri.starts_with(kModelScheme)) {
-    const std::string name = model_name_of(uri);
-    const auto found = find(name);
-    if (!found) return std::nullopt;
-    const std::size_t end = kModelScheme.size() + name.size();
-    return end + 1 < uri.size() ? *found / uri.substr(end + 1) : *found;
+  if (is_of_network(uri)) {
+    const auto model = fuel_model(uri);
+    const auto found = model ? find(*model) : std::nullopt;
+    return found && !model->file.empty() ? *found / model->file : found;
   }
+  if (!uri.starts_with(kModelScheme)) return find_file(uri, folder);
+  const std::string name = name_in(uri);
+  const auto found = find(name);
+  if (!found) return std::nullopt;
+  const std::size_t end = kModelScheme.size() + name.size();
+  return end + 1 < uri.size() ? *found / uri.substr(end + 1) : *found;
+}
+
+std::filesystem::path SdfModels::find_file(const std::string& uri, const std::filesystem::path& folder) const {
   constexpr std::string_view kFileScheme = "file://";
-  const std::string path = uri.starts_with(kFileScheme) ? uri.substr(kFileScheme.size()) : uri;
-  std::error_code error;
-  const std::filesystem::path beside = folder / path;
-  return std::filesystem::exists(beside, error) ? beside : world_.parent_path() / path;
+  const std::filesystem::path path = uri.starts_with(kFileScheme) ? uri.substr(kFileScheme.size()) : uri;
+  const std::filesystem::path world = world_.parent_path();
+  for (const std::filesystem::path& beside : {folder / path, world / path}) {
+    if (is_present(beside)) return beside;
+  }
+  for (auto part = path.begin(); part != path.end(); ++part) {
+    auto given = packages_.given(part->string());
+    for (auto next = std::next(part); given && next != path.end(); ++next) *given /= *next;
+    if (given && is_present(*given)) return *given;
+  }
+  std::vector<std::filesystem::path> searched = Packages::with_folders_above(folder);
+  const std::vector<std::filesystem::path> variables = folders_of(kFileVariable);
+  for (const auto& more : {Packages::with_folders_above(world), folders_of_models(), variables})
+    searched.insert(searched.end(), more.begin(), more.end());
+  for (const std::filesystem::path& end : Packages::ends_of(uri)) {
+    for (const std::filesystem::path& above : searched) {
+      if (is_present(above / end)) return std::filesystem::absolute(above / end);
+    }
+  }
+  return world / path;
 }
 
 std::filesystem::path sdf_file_of_model(const std::filesystem::path& folder) {

@@ -132,6 +132,12 @@ const MeshScene& SdfShapes::scene_of(const sdf::Mesh& mesh) {
     world_.fail(element, error.what());
   }
   to_site_axes(scene, {.unit_m = 1.0, .up = is_gltf(file) ? 'y' : 'z'});
+  const std::vector<std::filesystem::path> ends = Packages::ends_of(mesh.Uri());
+  if (!is_of_network(mesh.Uri()) && !ends.empty() && !file.string().ends_with(ends.front().string()))
+    site_.assumptions.push_back(
+        {"mesh " + file.filename().string(),
+         fmt::format("not found where the file names it: {} is used", io::on_one_line(world_.relative(file))),
+         "--package NAME=FOLDER"});
   if (!is_gltf(file) && scene.up == 'y')
     site_.assumptions.push_back(
         {"mesh " + file.filename().string(), "its up axis is not applied, as in RViz", "the file"});

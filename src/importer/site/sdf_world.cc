@@ -147,9 +147,10 @@ std::string SdfWorld::short_location_of(const sdf::ElementPtr& element) const {
 }
 
 std::filesystem::path SdfWorld::resolve(const std::string& uri, const sdf::ElementPtr& element) const {
-  if (is_of_network(uri)) fail(element, uri + ": files of a network are not supported");
+  if (const auto model = fuel_model(uri); is_of_network(uri) && (!model || model->file.empty()))
+    fail(element, uri + ": files of a network are not supported");
   std::optional<std::filesystem::path> path;
-  if (uri.starts_with("package://") || uri.starts_with("file://")) {
+  if (uri.starts_with("package://")) {
     try {
       path = models_.packages().resolve(uri);
     } catch (const InputError& error) {
@@ -160,9 +161,9 @@ std::filesystem::path SdfWorld::resolve(const std::string& uri, const sdf::Eleme
     const std::filesystem::path including(file != nullptr ? file->path.string() : element->FilePath());
     path = models_.find_uri(uri, std::filesystem::absolute(including).parent_path());
   }
-  if (!path) fail(element, unknown_model(model_name_of(uri)));
+  if (!path) fail(element, unknown_model(uri));
   std::error_code error;
-  if (!std::filesystem::is_regular_file(*path, error)) fail(element, uri + ": file not found");
+  if (!std::filesystem::is_regular_file(*path, error)) fail(element, unknown_file(uri));
   return *path;
 }
 

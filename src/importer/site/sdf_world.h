@@ -32,6 +32,9 @@ class SdfWorld {
   /// Throws InputError with file and line if the file does not exist.
   std::filesystem::path resolve(const std::string& uri, const sdf::ElementPtr& element) const;
 
+  /// Returns a path relative to the folder of the world.
+  std::string relative(const std::filesystem::path& path) const { return models_.packages().relative(path); }
+
   /// Returns where an element of the world is, "line 12"; of a model in another file, "model.sdf:12" with its folder.
   std::string short_location_of(const sdf::ElementPtr& element) const;
 

@@ -12,6 +12,7 @@
 #include "tests/importer/site/sdf_text.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
+#include "tests/support/variable.h"
 
 /// Models that worlds include, and versions of the format.
 namespace patrol::importer::sdf_models_test {
@@ -159,12 +160,59 @@ TEST(SdfSite, AWorldOfVersion111WithAModelOfVersion110AndARelativeMeshIsImported
   const SiteShape& shape = shape_of(import.read(), "crate.link.visual_1");
   EXPECT_EQ(shape.mesh.triangles.size(), 12u);
   EXPECT_THAT(shape.T_site_shape.position, VectorNear(Eigen::Vector3d(3, 0, 0), 1e-9));
-  EXPECT_EQ(
-      SiteFileImport("a.sdf", world(model("m", visual("<cone><radius>1</radius><length>1</length></cone>")), "1.12"))
-          .error(),
-      "a.sdf:3: <cone>: cones are not supported: use a mesh");
   EXPECT_EQ(SiteFileImport("a.sdf", world(model("m", visual(kBox)), "1.13")).error(),
-            "a.sdf:2: <sdf>: version = \"1.13\": must be 1.0 to 1.12");
+            "a.sdf:2: <sdf>: version = \"1.13\": must be 1.3 to 1.12");
+}
+
+TEST(SdfSite, ModelsThatAreNotFoundAreNamedTogether) {
+  SiteFileImport import("a.sdf", world(include("one") +
+                                       "\n<include><uri>\n https://fuel.gazebosim.org/1.0/O/models/Two%20B\n"
+                                       "</uri></include>" +
+                                       include("one")));
+  EXPECT_EQ(
+      import.error(),
+      "a.sdf:3: <include>: 2 unknown models: \"one\", \"Two B\": download those of a network, and give the folder "
+      "of each with --package NAME=FOLDER, or the folder above them in GAZEBO_MODEL_PATH or GZ_SIM_RESOURCE_PATH");
+}
+
+TEST(SdfSite, ModelsOfGazeboClassicAreFoundBelowTheHomeFolder) {
+  SiteFileImport import("a.sdf", world(include("crate")));
+  write_model(import, "crate", link(visual(kBox)));
+  std::filesystem::create_directories(import.folder / "home/.gazebo");
+  std::filesystem::rename(import.folder / "models", import.folder / "home/.gazebo/models");
+  const test::Variable home("HOME", (import.folder / "home").string());
+  EXPECT_EQ(import.read().shapes.size(), 1u);
+}
+
+/// Writes a box of 1 m as OBJ.
+void write_box(const std::filesystem::path& file) {
+  Mesh box;
+  add_box(box, {-0.5, -0.5, 0}, {0.5, 0.5, 1});
+  std::filesystem::create_directories(file.parent_path());
+  test::write_bytes(file, to_obj(box));
+}
+
+TEST(SdfSite, FilesAreFoundInTheFoldersAboveTheModelAndTheWorldAndByOption) {
+  const auto mesh = [](const std::string& uri) { return link(visual("<mesh><uri>" + uri + "</uri></mesh>")); };
+  SiteFileImport import("a.sdf", world(include("crate")));
+  write_box(import.folder / "models/crate/meshes/box.obj");
+  write_model(import, "crate", mesh("file://models/crate/meshes/box.obj"));
+  EXPECT_EQ(import.read().shapes.size(), 1u);
+  EXPECT_EQ(import.assumption("mesh box.obj"), "");
+  // A path of another computer, of which only the end fits.
+  write_model(import, "crate", mesh("file:///home/user/ws/meshes/box.obj"));
+  EXPECT_EQ(import.read().shapes.size(), 1u);
+  EXPECT_EQ(import.assumption("mesh box.obj"),
+            "not found where the file names it: models/crate/meshes/box.obj is used");
+  // The folder of a package that the path names.
+  write_box(import.folder / "elsewhere/parts/lid.obj");
+  write_model(import, "crate", mesh("file://models/lids/parts/lid.obj"));
+  EXPECT_THAT(import.error(), HasSubstr("model.sdf:2: <mesh>: file://models/lids/parts/lid.obj: file not found"));
+  import.options.packages["lids"] = import.folder / "elsewhere";
+  EXPECT_EQ(import.read().shapes.size(), 1u);
+  import.options.packages.clear();
+  const test::Variable variable("GAZEBO_RESOURCE_PATH", (import.folder / "elsewhere").string());
+  EXPECT_EQ(import.read().shapes.size(), 1u);
 }
 
 }  // namespace
