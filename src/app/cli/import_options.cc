@@ -78,6 +78,9 @@ void add_site(CLI::App& command, ImportSiteOptions& site) {
       .add_option("--start", site.start,
                   "Start of the mission, X,Y or X,Y,DEG, and point of a mesh's ground (default: by rule)")
       ->group(kSites);
+  command.add_option("--without", site.without, "Model of an SDF world to leave out, such as its robot (repeatable)")
+      ->take_all()
+      ->group(kSites);
   command.add_option("--robot", site.robot, "Robot of the scenario")->capture_default_str()->group(kSites);
   command.add_option("--contact-cell", site.contact_cell_m, "Cell of the contact geometry of a mesh or of SDF, m")
       ->check(CLI::Range(0.02, 1.0))

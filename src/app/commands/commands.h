@@ -240,6 +240,7 @@ struct ImportSiteOptions {
   std::filesystem::path file;         ///< floor plan, mesh, SDF world or MJCF
   std::filesystem::path out;          ///< folder worlds/NAME
   std::vector<std::string> packages;  ///< NAME=FOLDER
+  std::vector<std::string> without;   ///< models of an SDF world to leave out
   double wall_height_m = 2.5;
   double scale = 0.0;              ///< meters per unit of the file; 0: by rule
   std::string up;                  ///< axis of the file that points up; empty: by rule

@@ -139,6 +139,7 @@ ExitCode import_site_command(const ImportSiteOptions& options) {
                                      .up = options.up,
                                      .contact_cell_m = options.contact_cell_m,
                                      .packages = to_map<std::filesystem::path>(options.packages, "--package"),
+                                     .without = {options.without.begin(), options.without.end()},
                                      .mission = {.stations = options.stations,
                                                  .num_random = options.random_stations,
                                                  .seed = options.seed,

@@ -26,7 +26,6 @@ constexpr std::array kIgnored = std::to_array<ElementNote>({
     {"sensor", "ignored: sensors belong to the robot"},
     {"joint", "ignored: the links keep their initial poses"},
     {"gripper", "ignored"},
-    {"light", "ignored: the site has one sun"},
     {"projector", "ignored"},
     {"particle_emitter", "ignored"},
     {"audio_source", "ignored"},
@@ -135,18 +134,35 @@ class ElementChecker {
     for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) visit(child);
   }
 
+  /// Counts the elements that are left out before libsdformat reads the files, those of the world first.
+  void add_left_out() {
+    for (auto file = world_.files().rbegin(); file != world_.files().rend(); ++file) {
+      for (const LeftOutElement& element : file->source->left_out())
+        count({element.element, element.text, element.override_with}, world_.short_location_of(*file, element.line));
+    }
+  }
+
   std::vector<Assumption> rows() const {
     std::vector<Assumption> rows;
-    for (const auto& [key, found] : found_) {
-      const std::string more = found.count > 1 ? fmt::format(" ({}, the first in {})", found.count, found.location)
-                               : !found.location.empty() ? fmt::format(" ({})", found.location)
-                                                         : std::string();
-      rows.push_back({"<" + key.first + ">", key.second + more, "the file"});
+    for (const auto& [kind, found] : found_) {
+      const std::string number = found.count > 1 ? fmt::format("{}", found.count) : "";
+      const std::string first = found.count > 1 && !found.location.empty() ? ", the first in " : "";
+      const std::string more = number + first + found.location;
+      rows.push_back(
+          {"<" + kind.element + ">", kind.text + (more.empty() ? "" : " (" + more + ")"), kind.override_with});
     }
     return rows;
   }
 
  private:
+  /// Kind of a row.
+  struct Kind {
+    std::string element;
+    std::string text;
+    std::string override_with = "the file";
+    auto operator<=>(const Kind&) const = default;
+  };
+
   struct Found {
     int count = 0;
     std::string location = {};  ///< of the first
@@ -163,8 +179,11 @@ class ElementChecker {
   }
 
   void count(const sdf::ElementPtr& element, const std::string& text) {
-    Found& found = found_[{element->GetName(), text}];
-    if (found.count++ == 0) found.location = world_.short_location_of(element);
+    count({element->GetName(), text}, world_.short_location_of(element));
+  }
+  void count(const Kind& kind, const std::string& location) {
+    Found& found = found_[kind];
+    if (found.count++ == 0) found.location = location;
   }
 
   void check_gravity(const sdf::ElementPtr& element) const {
@@ -193,7 +212,7 @@ class ElementChecker {
   }
 
   const SdfWorld& world_;
-  std::map<std::pair<std::string, std::string>, Found> found_;
+  std::map<Kind, Found> found_;
 };
 
 }  // namespace
@@ -201,6 +220,7 @@ class ElementChecker {
 std::vector<Assumption> check_elements(const SdfWorld& world) {
   ElementChecker checker(world);
   checker.visit(world.world().Element());
+  checker.add_left_out();
   return checker.rows();
 }
 

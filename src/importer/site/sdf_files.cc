@@ -53,8 +53,12 @@ SdfFolder::~SdfFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-SdfFiles::SdfFiles(const std::filesystem::path& world, const SdfModels& models) : models_(models) {
-  add(world, SdfContent::kWorld);
+SdfFiles::SdfFiles(const std::filesystem::path& world, const SdfModels& models, const std::set<std::string>& without)
+    : models_(models) {
+  File file = read(world, SdfContent::kWorld);
+  file.source->leave_out_models(without);
+  for (const std::string& name : without) rows_.push_back({"model " + io::on_one_line(name), "left out", "--without"});
+  add(std::move(file));
   if (missing_.empty()) return;
   std::vector<std::string> uris;
   for (const Missing& missing : missing_) {
@@ -68,16 +72,19 @@ const SdfFiles::File* SdfFiles::find(const std::filesystem::path& path) const {
   return known == files_.end() ? nullptr : &*known;
 }
 
-const SdfFiles::File& SdfFiles::add(const std::filesystem::path& path, SdfContent content) {
-  File file{.path = path, .copy = {}, .source = std::make_unique<SdfSource>(path, content)};
-  open_.push_back(path);
+SdfFiles::File SdfFiles::read(const std::filesystem::path& path, SdfContent content) const {
+  return {.path = path, .copy = {}, .source = std::make_unique<SdfSource>(path, content)};
+}
+
+const SdfFiles::File& SdfFiles::add(File file) {
+  open_.push_back(file.path);
   for (tinyxml2::XMLElement* include : file.source->includes()) {
+    const int line = include->GetLineNum();
     // Without <uri>, libsdformat refuses it.
-    if (tinyxml2::XMLElement* uri = include->FirstChildElement("uri")) {
-      if (const auto copy = copy_of(*file.source, *include, file.num_models)) uri->SetText(copy->c_str());
-    }
+    if (include->FirstChildElement("uri") != nullptr) take(*file.source, *include, file.num_models);
     if (file.num_models > kMaxModels)
-      file.source->fail(*include, fmt::format("{} models: must be at most {}", file.num_models, kMaxModels));
+      throw input_error(file.source->file().string(), line,
+                        fmt::format("<include>: {} models: must be at most {}", file.num_models, kMaxModels));
   }
   open_.pop_back();
   file.copy = folder_.path() / fmt::format("{}.sdf", files_.size());
@@ -85,24 +92,26 @@ const SdfFiles::File& SdfFiles::add(const std::filesystem::path& path, SdfConten
   return files_.emplace_back(std::move(file));
 }
 
-/// Returns the file for libsdformat; none: the model is not found.
-std::optional<std::filesystem::path> SdfFiles::copy_of(const SdfSource& source, tinyxml2::XMLElement& include,
-                                                       std::size_t& num_models) {
+void SdfFiles::take(SdfSource& source, tinyxml2::XMLElement& include, std::size_t& num_models) {
   // libsdformat reads the text of these elements without a check.
   for (const char* name : {"uri", "name", "static", "placement_frame"}) {
     const tinyxml2::XMLElement* child = include.FirstChildElement(name);
     if (child != nullptr && child->GetText() == nullptr) source.fail(*child, "is empty");
   }
-  const tinyxml2::XMLElement& uri = *include.FirstChildElement("uri");
+  tinyxml2::XMLElement& uri = *include.FirstChildElement("uri");
   const auto path = resolve(source, uri);
-  if (!path) return std::nullopt;
+  if (!path) return;
   if (std::find(open_.begin(), open_.end(), *path) != open_.end())
     source.fail(include, fmt::format("\"{}\": the model includes itself", uri.GetText()));
   const File* included = find(*path);
-  if (included == nullptr && is_urdf(*path)) return path;
-  if (included == nullptr) included = &add(*path, SdfContent::kModel);
+  if (included == nullptr && is_urdf(*path)) return uri.SetText(path->c_str());
+  if (included == nullptr) {
+    File file = read(*path, SdfContent::kModel);
+    if (file.source->is_left_out()) return source.leave_out(include, file.source->content());
+    included = &add(std::move(file));
+  }
   num_models += included->num_models;
-  return included->copy;
+  uri.SetText(included->copy.c_str());
 }
 
 std::optional<std::filesystem::path> SdfFiles::resolve(const SdfSource& source, const tinyxml2::XMLElement& element) {
@@ -136,9 +145,8 @@ std::optional<std::filesystem::path> SdfFiles::built_in(const std::string& name)
   const std::filesystem::path file = folder_.path() / (name + ".sdf");
   if (std::filesystem::exists(file)) return file;
   io::save_text(file, name == "sun" ? kSun : kGroundPlane);
-  rows_.push_back({"model://" + name,
-                   name == "sun" ? "no folder is given: a directional light" : "no folder is given: the plane z = 0",
-                   fmt::format("--package {}=FOLDER", name)});
+  if (name == "ground_plane")
+    rows_.push_back({"model://ground_plane", "no folder is given: the plane z = 0", "--package ground_plane=FOLDER"});
   return file;
 }
 

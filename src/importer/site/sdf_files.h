@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,8 +42,8 @@ class SdfFiles {
 
   /// `model://ground_plane` and `model://sun` are known without a folder. Throws InputError "file:line: ..." for what
   /// SdfSource refuses, and for models that are not found or include themselves, or are more than 100,000. The error
-  /// about models that are not found names all of them.
-  SdfFiles(const std::filesystem::path& world, const SdfModels& models);
+  /// about models that are not found names all of them. `without`: names of models of the world that are left out.
+  SdfFiles(const std::filesystem::path& world, const SdfModels& models, const std::set<std::string>& without = {});
 
   const File& world() const { return files_.back(); }
 
@@ -55,16 +56,16 @@ class SdfFiles {
   const std::vector<Assumption>& rows() const { return rows_; }
 
  private:
-  const File* find(const std::filesystem::path& path) const;
-  const File& add(const std::filesystem::path& path, SdfContent content);
   /// Model that is not found.
   struct Missing {
     std::string location;  ///< "file:line"
     std::string uri;
   };
 
-  std::optional<std::filesystem::path> copy_of(const SdfSource& source, tinyxml2::XMLElement& include,
-                                               std::size_t& num_models);
+  const File* find(const std::filesystem::path& path) const;
+  File read(const std::filesystem::path& path, SdfContent content) const;
+  const File& add(File file);
+  void take(SdfSource& source, tinyxml2::XMLElement& include, std::size_t& num_models);
   std::optional<std::filesystem::path> resolve(const SdfSource& source, const tinyxml2::XMLElement& uri);
   std::optional<std::filesystem::path> built_in(const std::string& name);
 

@@ -180,7 +180,7 @@ class SdfSiteBuilder {
 }  // namespace
 
 ImportedSite read_sdf_site(const SiteImportOptions& options) {
-  const SdfWorld world(options.file, options.packages);
+  const SdfWorld world(options);
   ImportedSite site{.name = options.name, .source = options.file.filename().string()};
   site.assumptions = world.rows();
   const std::vector<Assumption> ignored = check_elements(world);

@@ -7,11 +7,13 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/error.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 #include "io/files/xml_problem.h"
+#include "io/yaml/settings_yaml.h"
 
 namespace patrol::importer {
 namespace {
@@ -22,9 +24,7 @@ struct RefusedElement {
 };
 
 constexpr std::array kRefusedElements = std::to_array<RefusedElement>({
-    {"actor", "animated actors are not supported: add pedestrians to the scenario"},
     {"population", "populations are not supported: write the models out"},
-    {"road", "roads are not supported: use a mesh or boxes"},
     {"image", "extruded images are not supported: use a mesh or a floor plan"},
     {"cone", "cones are not supported: use a mesh"},
     {"insertions", "insertions of a state are not supported: write the models out"},
@@ -118,12 +118,13 @@ SdfSource::SdfSource(const std::filesystem::path& file, SdfContent content) : fi
   if (minor_sdf_version(digits).value_or(kMaxMinorVersion + 1) > kMaxMinorVersion)
     fail(root, fmt::format("version = \"{}\": must be 1.0 to 1.{}", digits, kMaxMinorVersion));
   check_content(content);
+  left_out_ = leave_out_elements(*document_.RootElement());
   check(root);
   if (*minor_sdf_version(digits) > kMaxLibraryVersion)
     document_.RootElement()->SetAttribute("version", fmt::format("1.{}", kMaxLibraryVersion).c_str());
 }
 
-void SdfSource::check_content(SdfContent content) const {
+void SdfSource::check_content(SdfContent content) {
   const tinyxml2::XMLElement& root = *document_.RootElement();
   const bool is_world = content == SdfContent::kWorld;
   int count = 0;
@@ -131,9 +132,33 @@ void SdfSource::check_content(SdfContent content) const {
     const std::string_view name = child->Name();
     const bool is_content = is_world ? name == "world" : name == "model" || name == "light" || name == "actor";
     if (is_content && ++count > 1) fail(*child, fmt::format("second {}: must be one", name));
+    if (is_content) content_ = name;
   }
   if (count > 0) return;
   fail(root, is_world ? "has no <world>: import a world that includes the model" : "has no <model> to include");
+}
+
+void SdfSource::leave_out(tinyxml2::XMLElement& include, const std::string& content) {
+  if (auto row = left_out_element(content, include.GetLineNum())) left_out_.push_back(*std::move(row));
+  include.Parent()->DeleteChild(&include);
+}
+
+void SdfSource::leave_out_models(const std::set<std::string>& names) {
+  if (names.empty()) return;
+  const std::set<std::string> known = importer::leave_out_models(*document_.RootElement(), names);
+  for (const std::string& name : names) {
+    if (known.contains(name)) continue;
+    std::vector<std::string> names_of_world(known.begin(), known.end());
+    const std::string match = io::closest_match(name, names_of_world);
+    constexpr std::size_t kMaxNames = 20;
+    const bool is_cut = names_of_world.size() > kMaxNames;
+    if (is_cut) names_of_world.resize(kMaxNames);
+    const std::string hint = match.empty()
+                                 ? fmt::format("it has {}{}", fmt::join(names_of_world, ", "), is_cut ? ", ..." : "")
+                                 : fmt::format("did you mean {}?", match);
+    throw InputError(
+        io::on_one_line(fmt::format("--without {}: is not a model of {}: {}", name, file_.string(), hint)));
+  }
 }
 
 std::vector<tinyxml2::XMLElement*> SdfSource::includes() {
@@ -166,6 +191,14 @@ const tinyxml2::XMLElement* SdfSource::named(const std::string& name,
     if (attribute != nullptr && name == attribute && wanted(element)) last = &element;
   });
   return last;
+}
+
+std::optional<int> SdfSource::line_of_first(const std::string& name) const {
+  std::optional<int> line;
+  for_each_element(*document_.RootElement(), [&](const tinyxml2::XMLElement& element) {
+    if (!line && name == element.Name()) line = element.GetLineNum();
+  });
+  return line;
 }
 
 std::vector<SdfSource::Part> SdfSource::parts() const {

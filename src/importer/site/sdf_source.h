@@ -3,11 +3,14 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <tinyxml2.h>
+
+#include "importer/site/sdf_left_out.h"
 
 namespace patrol::importer {
 
@@ -20,15 +23,30 @@ constexpr int kMaxLibraryVersion = 9;
 /// Returns N of the version "1.N"; none if the text is not of this form.
 std::optional<int> minor_sdf_version(std::string_view version);
 
-/// Content that an SDF file must have: one <world>, or one <model> or <light> to include.
+/// Content that an SDF file must have: one <world>, or one <model>, <light> or <actor> to include.
 enum class SdfContent { kWorld, kModel };
 
 /// Text of an SDF file as XML: checks before libsdformat reads it, and places for its errors without a line.
 class SdfSource {
  public:
-  /// Throws InputError "file:line: what" unless the file is XML with a root <sdf> of version 1.0 to 1.12 and the
-  /// content, and for the first element that is refused or is no geometry of the format.
+  /// Leaves out elements (sdf_left_out.h). Throws InputError "file:line: what" unless the file is XML with a root <sdf>
+  /// of version 1.0 to 1.12 and the content, and for the first element that is refused or is no geometry of the format.
   SdfSource(const std::filesystem::path& file, SdfContent content);
+
+  /// Returns whether the file is a light or an actor alone, which are left out.
+  bool is_left_out() const { return content_ != "world" && content_ != "model"; }
+
+  /// Returns the content: "world", "model", "light" or "actor".
+  const std::string& content() const { return content_; }
+
+  /// Leaves out an <include> of a light or an actor.
+  void leave_out(tinyxml2::XMLElement& include, const std::string& content);
+
+  /// Leaves out models of the world. Throws InputError for a name that the world does not have.
+  void leave_out_models(const std::set<std::string>& names);
+
+  /// Returns the elements that are left out, those of a file first, then includes.
+  const std::vector<LeftOutElement>& left_out() const { return left_out_; }
 
   /// Returns the elements <include>, in the order of the file.
   std::vector<tinyxml2::XMLElement*> includes();
@@ -46,6 +64,9 @@ class SdfSource {
   const tinyxml2::XMLElement* named(const std::string& name,
                                     const std::function<bool(const tinyxml2::XMLElement&)>& wanted) const;
 
+  /// Returns the line of the first element with this name.
+  std::optional<int> line_of_first(const std::string& name) const;
+
   /// Element of the world alone in a world.
   struct Part {
     int line = 0;
@@ -60,11 +81,13 @@ class SdfSource {
   std::optional<std::string> text_at(int line, std::string_view element) const;
 
  private:
-  void check_content(SdfContent content) const;
+  void check_content(SdfContent content);
   void check(const tinyxml2::XMLElement& element) const;
 
   std::filesystem::path file_;
   tinyxml2::XMLDocument document_;
+  std::string content_;
+  std::vector<LeftOutElement> left_out_;
 };
 
 }  // namespace patrol::importer

@@ -84,8 +84,8 @@ std::string text_of_unlocated(const SdfSource& source, const sdf::Error& error, 
 
 }  // namespace
 
-SdfWorld::SdfWorld(const std::filesystem::path& file, const std::map<std::string, std::filesystem::path>& packages)
-    : models_(file, packages), files_(file, models_) {
+SdfWorld::SdfWorld(const SiteImportOptions& options)
+    : models_(options.file, options.packages), files_(options.file, models_, options.without) {
   sdf::Console::Instance()->SetQuiet(true);
   sdf::ParserConfig config;
   config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
@@ -138,12 +138,19 @@ std::string SdfWorld::place_of(const std::filesystem::path& path, std::optional<
   return file.string() + (line ? fmt::format(":{}", *line) : "");
 }
 
+std::string SdfWorld::short_location_of(const SdfFiles::File& file, std::optional<int> line) const {
+  if (&file == &files_.world()) return line ? fmt::format("line {}", *line) : std::string();
+  return (file.path.parent_path().filename() / file.path.filename()).string() + (line ? fmt::format(":{}", *line) : "");
+}
+
 std::string SdfWorld::short_location_of(const sdf::ElementPtr& element) const {
   const std::optional<int> line = element->LineNumber();
   const SdfFiles::File* file = files_.find_copy(element->FilePath());
-  if (file == nullptr || file == &files_.world()) return line ? fmt::format("line {}", *line) : std::string();
-  const std::filesystem::path& path = file->path;
-  return (path.parent_path().filename() / path.filename()).string() + (line ? fmt::format(":{}", *line) : "");
+  if (line) return short_location_of(file != nullptr ? *file : files_.world(), line);
+  for (auto at = files_.files().rbegin(); at != files_.files().rend(); ++at) {
+    if (const auto first = at->source->line_of_first(element->GetName())) return short_location_of(*at, first);
+  }
+  return {};
 }
 
 std::filesystem::path SdfWorld::resolve(const std::string& uri, const sdf::ElementPtr& element) const {

@@ -13,15 +13,16 @@
 #include "importer/assumptions.h"
 #include "importer/site/sdf_files.h"
 #include "importer/site/sdf_models.h"
+#include "importer/site/site_import.h"
 
 namespace patrol::importer {
 
 /// SDF world as libsdformat reads it, with its models included.
 class SdfWorld {
  public:
-  /// Reads a file with its models (SdfModels, SdfFiles). Throws InputError with one line, "file:line: what", for the
+  /// Reads a file with its models (SdfModels, SdfFiles). Uses `file`, `packages` and `without`. Throws InputError with one line, "file:line: what", for the
   /// first error of these or of libsdformat, with the place in the world or in the included model.
-  SdfWorld(const std::filesystem::path& file, const std::map<std::string, std::filesystem::path>& packages);
+  explicit SdfWorld(const SiteImportOptions& options);
   SdfWorld(const SdfWorld&) = delete;
   SdfWorld& operator=(const SdfWorld&) = delete;
 
@@ -35,7 +36,13 @@ class SdfWorld {
   /// Returns a path relative to the folder of the world.
   std::string relative(const std::filesystem::path& path) const { return models_.packages().relative(path); }
 
-  /// Returns where an element of the world is, "line 12"; of a model in another file, "model.sdf:12" with its folder.
+  const std::vector<SdfFiles::File>& files() const { return files_.files(); }
+
+  /// Returns where a line of a file is, "line 12" in the world; in another file, "model.sdf:12" with its folder.
+  std::string short_location_of(const SdfFiles::File& file, std::optional<int> line) const;
+
+  /// Returns where an element of the world is, as above. An element without a line, because libsdformat does not know
+  /// it, is where its name first occurs.
   std::string short_location_of(const sdf::ElementPtr& element) const;
 
   /// Throws InputError "file:line: <element>: what".

@@ -43,7 +43,8 @@ const std::vector<FormatOption>& format_options() {
       {"--scale", {SiteFormat::kMesh, SiteFormat::kCloud, SiteFormat::kScans}, "meshes, point clouds and scans"},
       {"--up", {SiteFormat::kMesh, SiteFormat::kCloud, SiteFormat::kScans}, "meshes, point clouds and scans"},
       {"--contact-cell", {SiteFormat::kMesh, SiteFormat::kSdf}, "meshes and SDF"},
-      {"--package", {SiteFormat::kSdf}, "SDF"}};
+      {"--package", {SiteFormat::kSdf}, "SDF"},
+      {"--without", {SiteFormat::kSdf}, "SDF"}};
   return options;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include <Eigen/Core>
@@ -38,6 +39,7 @@ struct SiteImportOptions {
   std::string up = {};           ///< meshes and points: axis of the file that points up, y or z; empty: by rule
   double contact_cell_m = 0.05;  ///< meshes and SDF: cell of the contact geometry
   std::map<std::string, std::filesystem::path> packages = {};  ///< SDF: folders of models, by name
+  std::set<std::string> without = {};                          ///< SDF: names of models of the world to leave out
   MissionOptions mission = {};
   ImportProgress on_progress = {};  ///< scans and points: called during the import; empty: not called
 };
