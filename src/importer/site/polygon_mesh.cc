@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace patrol::importer {
@@ -62,6 +64,23 @@ Mesh extruded_polygon(std::vector<Eigen::Vector2d> corners_m, double height_m) {
     const int next = (i + 1) % count;
     mesh.triangles.push_back({i, next, count + next});
     mesh.triangles.push_back({i, count + next, count + i});
+  }
+  return mesh;
+}
+
+Mesh cone(double radius_m, double length_m) {
+  constexpr int kSides = 32;
+  Mesh mesh;
+  for (int i = 0; i < kSides; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kSides;
+    mesh.vertices_m.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle), -0.5 * length_m);
+  }
+  mesh.vertices_m.emplace_back(0.0, 0.0, -0.5 * length_m);
+  mesh.vertices_m.emplace_back(0.0, 0.0, 0.5 * length_m);
+  for (int i = 0; i < kSides; ++i) {
+    const int next = (i + 1) % kSides;
+    mesh.triangles.push_back({next, i, kSides});
+    mesh.triangles.push_back({i, next, kSides + 1});
   }
   return mesh;
 }

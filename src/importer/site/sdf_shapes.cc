@@ -211,6 +211,21 @@ std::vector<SiteShape> SdfShapes::polylines(const sdf::ElementPtr& element, cons
   return {shape};
 }
 
+SiteShape SdfShapes::cone_shape(const sdf::ElementPtr& geometry, const SiteShape& common) {
+  // libsdformat 12 copies the element without its line and with the values as text.
+  const sdf::ElementPtr element = geometry->GetElement("cone");
+  const auto size_of = [&](const char* name) {
+    const auto [size, is_number] = element->Get<double>(name, 0.0);
+    if (!(size > 0.0) || !std::isfinite(size))
+      world_.fail(geometry, fmt::format("<cone>: <{}> must be positive", name));
+    return size;
+  };
+  SiteShape shape = common;
+  shape.type = SiteShapeType::kMesh;
+  shape.mesh = cone(size_of("radius"), size_of("length"));
+  return shape;
+}
+
 std::vector<SiteShape> SdfShapes::shapes_of(const sdf::Geometry& geometry, const std::string& name,
                                             const Pose3& T_site_shape, const std::string& material) {
   if (geometry.Type() == sdf::GeometryType::MESH)
@@ -269,6 +284,7 @@ std::vector<SiteShape> SdfShapes::shapes_of(const sdf::Geometry& geometry, const
       break;
   }
   if (element && element->HasElement("polyline")) return polylines(element, shape);
+  if (element && element->HasElement("cone")) return {cone_shape(element, shape)};
   return {};
 }
 

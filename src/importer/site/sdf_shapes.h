@@ -37,6 +37,7 @@ class SdfShapes {
                                      const std::string& material);
   SiteShape height_map(const sdf::Heightmap& map, const SiteShape& common);
   std::vector<SiteShape> polylines(const sdf::ElementPtr& element, const SiteShape& common);
+  SiteShape cone_shape(const sdf::ElementPtr& geometry, const SiteShape& common);
   const MeshScene& scene_of(const sdf::Mesh& mesh);
 
   const SdfWorld& world_;

@@ -26,7 +26,6 @@ struct RefusedElement {
 constexpr std::array kRefusedElements = std::to_array<RefusedElement>({
     {"population", "populations are not supported: write the models out"},
     {"image", "extruded images are not supported: use a mesh or a floor plan"},
-    {"cone", "cones are not supported: use a mesh"},
     {"insertions", "insertions of a state are not supported: write the models out"},
     {"deletions", "deletions of a state are not supported: remove the models"},
 });

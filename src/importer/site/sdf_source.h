@@ -52,7 +52,7 @@ class SdfSource {
   std::vector<tinyxml2::XMLElement*> includes();
 
   /// Returns the text for libsdformat, with every element in its line of the file. Versions above 1.9, the latest that
-  /// libsdformat 12 reads, are replaced by it: they only add elements, and the shapes among these are refused.
+  /// libsdformat 12 reads, are replaced by it: they only add elements, which it copies, such as <cone>.
   std::string text() const;
 
   const std::filesystem::path& file() const { return file_; }
