@@ -68,6 +68,7 @@ const std::set<std::string_view> kKnown = {"world",
                                            "plane",
                                            "mesh",
                                            "capsule",
+                                           "cone",
                                            "ellipsoid",
                                            "polyline",
                                            "heightmap",
@@ -205,8 +206,9 @@ class ElementChecker {
   void check_state(const sdf::ElementPtr& element) const {
     for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
       if (!child->GetExplicitlySetInFile()) continue;
-      if (child->GetName() == "scale" && child->Get<ignition::math::Vector3d>() != ignition::math::Vector3d::One)
-        world_.fail(child, "scales of a state are not supported: scale the geometry");
+      const bool is_scale = child->GetName() == "scale";
+      const auto scale = is_scale ? child->Get<ignition::math::Vector3d>() : ignition::math::Vector3d::One;
+      if (!(scale.Min() > 0.0) || !scale.IsFinite()) world_.fail(child, "must be three positive numbers");
       if (child->GetName() == "model") check_state(child);
     }
   }

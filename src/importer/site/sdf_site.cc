@@ -87,8 +87,11 @@ class SdfSiteBuilder {
       const sdf::Model& model = *world_.world().ModelByIndex(i);
       add_model(model, Pose3{}, model.Name(), states);
     }
-    if (!states.empty())
-      site_.assumptions.push_back({"<state>", fmt::format("replaces the poses of {} models", num_moved_), "the file"});
+    if (states.empty()) return;
+    site_.assumptions.push_back({"<state>", fmt::format("replaces the poses of {} models", num_moved_), "the file"});
+    if (num_scaled_ > 0)
+      site_.assumptions.push_back(
+          {"<scale>", fmt::format("the state scales the shapes of {} models, as in Gazebo", num_scaled_), "the file"});
   }
 
   void add_mesh_contacts(const SiteImportOptions& options) {
@@ -119,7 +122,9 @@ class SdfSiteBuilder {
     const auto state = states.find(model.Name());
     const bool has_state = state != states.end();
     const Pose3 T_site_model = has_state ? state->second.T_world_model : T_site_parent * resolved(world_, model);
+    scale_ = has_state ? state->second.scale : Eigen::Vector3d::Ones().eval();
     num_moved_ += has_state ? 1 : 0;
+    num_scaled_ += scale_ != Eigen::Vector3d::Ones() ? 1 : 0;
     for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
       const sdf::Link& link = *model.LinkByIndex(i);
       Pose3 T_site_link = T_site_model * resolved(world_, link);
@@ -141,8 +146,7 @@ class SdfSiteBuilder {
       const sdf::Visual& visual = *link.VisualByIndex(i);
       if (visual.Geom() == nullptr) continue;
       const std::string material = shapes_.material_of(visual);
-      add(shapes_.shapes_of(*visual.Geom(), name + "." + visual.Name(), T_site_link * resolved(world_, visual),
-                            material));
+      add(scaled_shapes(*visual.Geom(), name + "." + visual.Name(), T_site_link * resolved(world_, visual), material));
     }
     for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
       const sdf::Collision& collision = *link.CollisionByIndex(i);
@@ -154,7 +158,7 @@ class SdfSiteBuilder {
 
   void add_collision(const sdf::Collision& collision, const Pose3& T_site_shape, const std::string& name,
                      bool is_seen_by_lidar) {
-    for (SiteShape& shape : shapes_.shapes_of(*collision.Geom(), name, T_site_shape, kContactMaterial)) {
+    for (SiteShape& shape : scaled_shapes(*collision.Geom(), name, T_site_shape, kContactMaterial)) {
       if (shape.use == ShapeUse::kVisualOnly) continue;
       if (is_seen_by_lidar) {
         SiteShape seen = shape;
@@ -168,13 +172,27 @@ class SdfSiteBuilder {
     }
   }
 
+  std::vector<SiteShape> scaled_shapes(const sdf::Geometry& geometry, const std::string& name,
+                                       const Pose3& T_site_shape, const std::string& material) {
+    std::vector<SiteShape> shapes = shapes_.shapes_of(geometry, name, T_site_shape, material);
+    if (scale_ == Eigen::Vector3d::Ones()) return shapes;
+    // The scale of a state replaces that of a mesh (physics::MeshShape::SetScale).
+    Eigen::Vector3d factors = scale_;
+    if (const sdf::Mesh* mesh = geometry.MeshShape())
+      factors = factors.cwiseQuotient(Eigen::Vector3d(mesh->Scale().X(), mesh->Scale().Y(), mesh->Scale().Z()));
+    for (SiteShape& shape : shapes) apply_scale(factors, shape);
+    return shapes;
+  }
+
   void add(std::vector<SiteShape> shapes) { std::move(shapes.begin(), shapes.end(), std::back_inserter(site_.shapes)); }
 
   const SdfWorld& world_;
   ImportedSite& site_;
   SdfShapes shapes_;
-  std::vector<Mesh> contact_meshes_;  ///< in site
-  int num_moved_ = 0;                 ///< models with a state
+  std::vector<Mesh> contact_meshes_;                 ///< in site
+  Eigen::Vector3d scale_ = Eigen::Vector3d::Ones();  ///< of the shapes of the model that is being added
+  int num_moved_ = 0;                                ///< models with a state
+  int num_scaled_ = 0;                               ///< models with another scale than 1
 };
 
 }  // namespace

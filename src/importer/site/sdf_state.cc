@@ -1,5 +1,7 @@
 #include "importer/site/sdf_state.h"
 
+#include <algorithm>
+
 namespace patrol::importer {
 namespace {
 
@@ -20,6 +22,10 @@ std::map<std::string, SdfModelState> states_below(const sdf::ElementPtr& element
           state.links[last_name(link->Get<std::string>("name"))] = to_pose(link->Get<ignition::math::Pose3d>("pose"));
       }
     }
+    if (model->HasElement("scale")) {
+      const auto scale = model->Get<ignition::math::Vector3d>("scale");
+      state.scale = {scale.X(), scale.Y(), scale.Z()};
+    }
     state.models = states_below(model);
     states[last_name(model->Get<std::string>("name"))] = std::move(state);
   }
@@ -32,6 +38,28 @@ std::map<std::string, SdfModelState> model_states(const sdf::World& world) {
   const sdf::ElementPtr element = world.Element();
   if (!element->HasElement("state")) return {};
   return states_below(element->GetElement("state"));
+}
+
+void apply_scale(const Eigen::Vector3d& scale, SiteShape& shape) {
+  switch (shape.type) {
+    case SiteShapeType::kBox:
+    case SiteShapeType::kEllipsoid:
+      shape.size_m = shape.size_m.cwiseProduct(scale);
+      return;
+    case SiteShapeType::kCylinder:
+    case SiteShapeType::kCapsule:
+      shape.size_m = shape.size_m.cwiseProduct(Eigen::Vector3d(std::max(scale.x(), scale.y()), scale.z(), 1.0));
+      return;
+    case SiteShapeType::kSphere:
+      shape.size_m *= scale.maxCoeff();
+      return;
+    case SiteShapeType::kMesh:
+      shape.mesh = scaled(shape.mesh, scale);
+      return;
+    case SiteShapeType::kPlane:
+    case SiteShapeType::kHeightField:
+      return;
+  }
 }
 
 }  // namespace patrol::importer
