@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
@@ -182,16 +183,22 @@ SiteShape SdfShapes::height_map(const sdf::Heightmap& map, const SiteShape& comm
   shape.type = SiteShapeType::kHeightField;
   shape.height_field.height_m = Grid<float>(
       GridGeometry{.resolution_m = step_m, .width = image->width, .height = image->height, .origin_m = corner});
+  // Gazebo scales the brightest pixel to the height (HeightmapShape: size.z / MaxElevation).
+  std::uint8_t brightest = 1;
+  for (std::size_t pixel = 0; pixel < image->rgb.size(); pixel += 3) brightest = std::max(brightest, image->rgb[pixel]);
+  const double step_height_m = map.Size().Z() / brightest;
   for (int row = 0; row < image->height; ++row) {
     for (int col = 0; col < image->width; ++col) {
       const auto pixel = static_cast<std::size_t>(3 * ((image->height - 1 - row) * image->width + col));
-      shape.height_field.height_m.at({col, row}) = static_cast<float>(image->rgb[pixel] / 255.0 * map.Size().Z());
+      shape.height_field.height_m.at({col, row}) = static_cast<float>(image->rgb[pixel] * step_height_m);
     }
   }
   const ignition::math::Vector3d& p = map.Position();
   shape.T_site_shape = common.T_site_shape * Pose3{{p.X(), p.Y(), p.Z()}, Eigen::Quaterniond::Identity()};
-  add_row_once({"heightmap " + file.filename().string(),
-                "heights of 8 bits; textures and blends are ignored; one color", "a mesh"});
+  add_row_once(
+      {"heightmap " + file.filename().string(),
+       "heights of 8 bits, the brightest pixel at the height of <size>; textures and blends are ignored; one color",
+       "a mesh"});
   return shape;
 }
 
