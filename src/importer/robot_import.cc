@@ -21,20 +21,10 @@ namespace patrol::importer {
 
 ImportedRobot import_robot(const RobotImportOptions& options) {
   const std::string file = options.file.string();
-  std::string text = io::load_text(options.file), label = file;
   const Packages packages(options.packages, options.file);
-  const bool is_hidden_xacro = !is_xacro(options.file) && has_xacro_text(text);
-  if (is_hidden_xacro || is_xacro(options.file)) {
-    text = expand_xacro(options.file, options.xacro_arguments, options.packages, options.python);
-    label += " (expanded)";
-  }
-  SourceRobot source = read_source_robot(label, text, packages);
-  if (is_hidden_xacro) {
-    source.assumptions.insert(source.assumptions.begin(),
-                              {.subject = options.file.filename().string(),
-                               .text = "has expressions of xacro and is expanded by xacro",
-                               .override_with = "--arg NAME=VALUE and environment variables, or an expanded file"});
-  }
+  ExpandedFile loaded = load_expanded(options.file, {options.xacro_arguments, options.packages, options.python});
+  SourceRobot source = read_source_robot(loaded.label, loaded.text, packages);
+  source.assumptions.insert(source.assumptions.begin(), loaded.rows.begin(), loaded.rows.end());
   release_fixed_wheels(source);
   const NormalizedRobot robot = normalize(source, {.name = options.name,
                                                    .base_link = options.base_link,

@@ -16,6 +16,7 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 
 namespace patrol::importer {
@@ -208,13 +209,25 @@ bool has_xacro_text(const std::string& text) {
 
 bool is_xacro(const std::filesystem::path& file) { return file.extension() == ".xacro"; }
 
-std::string expand_xacro(const std::filesystem::path& file, const std::map<std::string, std::string>& arguments,
-                         const std::map<std::string, std::filesystem::path>& packages, const std::string& python) {
+ExpandedFile load_expanded(const std::filesystem::path& file, const XacroOptions& options) {
+  ExpandedFile loaded{.text = io::load_text(file), .label = file.string()};
+  const bool is_hidden = !is_xacro(file) && has_xacro_text(loaded.text);
+  if (!is_hidden && !is_xacro(file)) return loaded;
+  loaded.text = expand_xacro(file, options);
+  loaded.label += " (expanded)";
+  if (is_hidden)
+    loaded.rows.push_back({.subject = file.filename().string(),
+                           .text = "has expressions of xacro and is expanded by xacro",
+                           .override_with = "--xacro-arg NAME=VALUE and environment variables, or an expanded file"});
+  return loaded;
+}
+
+std::string expand_xacro(const std::filesystem::path& file, const XacroOptions& options) {
   const char* named = std::getenv("PATROL_PYTHON");
-  const std::string interpreter = named != nullptr && *named != '\0' ? named : python;
-  std::vector<std::string> words = {interpreter, "-c", kScript, file.string(), std::to_string(packages.size())};
-  for (const auto& [name, folder] : packages) words.push_back(name + "=" + folder.string());
-  for (const auto& [name, value] : arguments) words.push_back(name + "=" + value);
+  const std::string interpreter = named != nullptr && *named != '\0' ? named : options.python;
+  std::vector<std::string> words = {interpreter, "-c", kScript, file.string(), std::to_string(options.packages.size())};
+  for (const auto& [name, folder] : options.packages) words.push_back(name + "=" + folder.string());
+  for (const auto& [name, value] : options.arguments) words.push_back(name + "=" + value);
   Output output = run_python(words);
   if (output.exit_code == 0) return std::move(output.out);
   std::string message = joined_lines(output.error);

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
+#include "importer/assumptions.h"
 #include "importer/packages.h"
 
 namespace patrol::importer {
@@ -15,10 +17,27 @@ bool is_xacro(const std::filesystem::path& file);
 /// the elements of Gazebo.
 bool has_xacro_text(const std::string& text);
 
-/// Expands a xacro file by the Python package xacro, without ROS, with the interpreter `python`, or the one that the
-/// environment variable PATROL_PYTHON names. Throws InputError with the file and xacro's message in one line if the
+/// Options of an expansion by xacro.
+struct XacroOptions {
+  std::map<std::string, std::string> arguments = {};           ///< by name
+  std::map<std::string, std::filesystem::path> packages = {};  ///< folders of packages, by name
+  std::string python = "python3";                              ///< interpreter that has the package xacro
+};
+
+/// Text of a file that may need xacro.
+struct ExpandedFile {
+  std::string text;
+  std::string label;                  ///< for messages: the file, with "(expanded)" if the lines are not its own
+  std::vector<Assumption> rows = {};  ///< whether the file is expanded although its name does not end in `.xacro`
+};
+
+/// Reads a file, and expands it by `expand_xacro` if it needs xacro by its name or its text. Throws InputError as that
+/// function.
+ExpandedFile load_expanded(const std::filesystem::path& file, const XacroOptions& options);
+
+/// Expands a xacro file by the Python package xacro, without ROS, with the interpreter of the options, or the one that
+/// the environment variable PATROL_PYTHON names. Throws InputError with the file and xacro's message in one line if the
 /// package is missing or the expansion fails.
-std::string expand_xacro(const std::filesystem::path& file, const std::map<std::string, std::string>& arguments,
-                         const std::map<std::string, std::filesystem::path>& packages, const std::string& python);
+std::string expand_xacro(const std::filesystem::path& file, const XacroOptions& options);
 
 }  // namespace patrol::importer

@@ -14,19 +14,13 @@
 #include "tests/importer/import.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
+#include "tests/support/xacro.h"
 
 namespace patrol::importer::xacro_test {
 namespace {
 
-using test::TemporaryFolder, test::write_bytes;
+using test::has_xacro, test::TemporaryFolder, test::write_bytes;
 using ::testing::EndsWith, ::testing::HasSubstr, ::testing::MatchesRegex, ::testing::Not;
-
-/// Returns whether xacro is installed, in the interpreter of the tests that tools/setup makes or in another.
-bool has_xacro() {
-  const std::string python = PATROL_SOURCE_DIR "/.deps/python/bin/python";
-  if (std::filesystem::exists(python)) ::setenv("PATROL_PYTHON", python.c_str(), 0);
-  return std::system("${PATROL_PYTHON:-python3} -c 'import xacro' 2> /dev/null") == 0;
-}
 
 TEST(Xacro, MacrosArgumentsAndFoundPackagesAreExpanded) {
   if (!has_xacro()) GTEST_SKIP() << "the Python package xacro is not installed";

@@ -37,7 +37,7 @@ void add_robot(CLI::App& command, ImportRobotOptions& robot) {
       ->group(kBoth);
   command.add_option("--xacro-arg", robot.xacro_arguments, "Argument of xacro, NAME=VALUE (repeatable)")
       ->take_all()
-      ->group(kRobots);
+      ->group(kBoth);
   command
       .add_option("--frame", robot.frames,
                   "Link that carries a sensor, FRAME=LINK with a frame of Patrol, such as lidar (repeatable)")
@@ -111,6 +111,7 @@ void add_import_command(CLI::App& app, Call& call) {
       call.import_site.file = call.import_robot.file;
       call.import_site.out = call.import_robot.out;
       call.import_site.packages = call.import_robot.packages;
+      call.import_site.xacro_arguments = call.import_robot.xacro_arguments;
       call.import_site.given = given_options(*command);
       return import_site_command(call.import_site);
     };

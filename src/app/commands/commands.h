@@ -237,10 +237,11 @@ struct ImportRobotOptions {
 ExitCode import_robot_command(const ImportRobotOptions& options);
 
 struct ImportSiteOptions {
-  std::filesystem::path file;         ///< floor plan, mesh, SDF world or MJCF
-  std::filesystem::path out;          ///< folder worlds/NAME
-  std::vector<std::string> packages;  ///< NAME=FOLDER
-  std::vector<std::string> without;   ///< models of an SDF world to leave out
+  std::filesystem::path file;                ///< floor plan, mesh, SDF world or MJCF
+  std::filesystem::path out;                 ///< folder worlds/NAME
+  std::vector<std::string> packages;         ///< NAME=FOLDER
+  std::vector<std::string> xacro_arguments;  ///< NAME=VALUE
+  std::vector<std::string> without;          ///< models of an SDF world to leave out
   double wall_height_m = 2.5;
   double scale = 0.0;              ///< meters per unit of the file; 0: by rule
   std::string up;                  ///< axis of the file that points up; empty: by rule

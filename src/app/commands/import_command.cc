@@ -140,6 +140,8 @@ ExitCode import_site_command(const ImportSiteOptions& options) {
                                      .contact_cell_m = options.contact_cell_m,
                                      .packages = to_map<std::filesystem::path>(options.packages, "--package"),
                                      .without = {options.without.begin(), options.without.end()},
+                                     .xacro_arguments = to_map<std::string>(options.xacro_arguments, "--xacro-arg"),
+                                     .python = python_with_xacro(),
                                      .mission = {.stations = options.stations,
                                                  .num_random = options.random_stations,
                                                  .seed = options.seed,

@@ -15,6 +15,7 @@
 
 #include "core/error.h"
 #include "importer/source_reader.h"
+#include "importer/xacro.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 
@@ -53,11 +54,11 @@ SdfFolder::~SdfFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-SdfFiles::SdfFiles(const std::filesystem::path& world, const SdfModels& models, const std::set<std::string>& without)
-    : models_(models) {
-  File file = read(world, SdfContent::kWorld);
-  file.source->leave_out_models(without);
-  for (const std::string& name : without) rows_.push_back({"model " + io::on_one_line(name), "left out", "--without"});
+SdfFiles::SdfFiles(const SiteImportOptions& options, const SdfModels& models) : options_(options), models_(models) {
+  File file = read(options.file, SdfContent::kWorld);
+  file.source->leave_out_models(options.without);
+  for (const std::string& name : options.without)
+    rows_.push_back({"model " + io::on_one_line(name), "left out", "--without"});
   add(std::move(file));
   if (missing_.empty()) return;
   std::vector<std::string> uris;
@@ -72,8 +73,10 @@ const SdfFiles::File* SdfFiles::find(const std::filesystem::path& path) const {
   return known == files_.end() ? nullptr : &*known;
 }
 
-SdfFiles::File SdfFiles::read(const std::filesystem::path& path, SdfContent content) const {
-  return {.path = path, .copy = {}, .source = std::make_unique<SdfSource>(path, content)};
+SdfFiles::File SdfFiles::read(const std::filesystem::path& path, SdfContent content) {
+  const ExpandedFile loaded = load_expanded(path, {options_.xacro_arguments, options_.packages, options_.python});
+  rows_.insert(rows_.end(), loaded.rows.begin(), loaded.rows.end());
+  return {.path = path, .copy = {}, .source = std::make_unique<SdfSource>(loaded.label, loaded.text, content)};
 }
 
 const SdfFiles::File& SdfFiles::add(File file) {
@@ -83,7 +86,7 @@ const SdfFiles::File& SdfFiles::add(File file) {
     // Without <uri>, libsdformat refuses it.
     if (include->FirstChildElement("uri") != nullptr) take(*file.source, *include, file.num_models);
     if (file.num_models > kMaxModels)
-      throw input_error(file.source->file().string(), line,
+      throw input_error(file.source->label().string(), line,
                         fmt::format("<include>: {} models: must be at most {}", file.num_models, kMaxModels));
   }
   open_.pop_back();
@@ -116,10 +119,10 @@ void SdfFiles::take(SdfSource& source, tinyxml2::XMLElement& include, std::size_
 
 std::optional<std::filesystem::path> SdfFiles::resolve(const SdfSource& source, const tinyxml2::XMLElement& element) {
   const auto fail = [&](const std::string& what) {
-    return input_error(source.file().string(), element.GetLineNum(), io::on_one_line(what));
+    return input_error(source.label().string(), element.GetLineNum(), io::on_one_line(what));
   };
   const std::string uri = trimmed(element.GetText());
-  auto path = models_.find_uri(uri, std::filesystem::absolute(source.file()).parent_path());
+  auto path = models_.find_uri(uri, std::filesystem::absolute(source.label()).parent_path());
   std::error_code error;
   if (!path && uri == std::string(kModelScheme) + name_in(uri)) path = built_in(name_in(uri));
   if (!is_of_network(uri) && (!path || !std::filesystem::exists(*path, error))) {
@@ -127,7 +130,7 @@ std::optional<std::filesystem::path> SdfFiles::resolve(const SdfSource& source, 
     if (const std::string found = sdf::findFile(uri, true, false); !found.empty()) path = found;
   }
   if (!path && !name_in(uri).empty()) {
-    missing_.push_back({fmt::format("{}:{}", source.file().string(), element.GetLineNum()), uri});
+    missing_.push_back({fmt::format("{}:{}", source.label().string(), element.GetLineNum()), uri});
     return std::nullopt;
   }
   if (!path) throw fail(fmt::format("<include>: {}: names no model", uri));

@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "importer/assumptions.h"
 #include "importer/site/sdf_models.h"
 #include "importer/site/sdf_source.h"
+#include "importer/site/site_import.h"
 
 namespace patrol::importer {
 
@@ -34,7 +34,7 @@ class SdfFolder {
 class SdfFiles {
  public:
   struct File {
-    std::filesystem::path path;  ///< as in messages
+    std::filesystem::path path;
     std::filesystem::path copy;
     std::unique_ptr<SdfSource> source;
     std::size_t num_models = 1;  ///< models with all those that they include
@@ -42,8 +42,9 @@ class SdfFiles {
 
   /// `model://ground_plane` and `model://sun` are known without a folder. Throws InputError "file:line: ..." for what
   /// SdfSource refuses, and for models that are not found or include themselves, or are more than 100,000. The error
-  /// about models that are not found names all of them. `without`: names of models of the world that are left out.
-  SdfFiles(const std::filesystem::path& world, const SdfModels& models, const std::set<std::string>& without = {});
+  /// about models that are not found names all of them. Uses `file`, `packages`, `without`, `xacro_arguments` and
+  /// `python`. The arguments must outlive the object.
+  SdfFiles(const SiteImportOptions& options, const SdfModels& models);
 
   const File& world() const { return files_.back(); }
 
@@ -63,12 +64,13 @@ class SdfFiles {
   };
 
   const File* find(const std::filesystem::path& path) const;
-  File read(const std::filesystem::path& path, SdfContent content) const;
+  File read(const std::filesystem::path& path, SdfContent content);
   const File& add(File file);
   void take(SdfSource& source, tinyxml2::XMLElement& include, std::size_t& num_models);
   std::optional<std::filesystem::path> resolve(const SdfSource& source, const tinyxml2::XMLElement& uri);
   std::optional<std::filesystem::path> built_in(const std::string& name);
 
+  const SiteImportOptions& options_;
   const SdfModels& models_;
   SdfFolder folder_;
   std::vector<File> files_;

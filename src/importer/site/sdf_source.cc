@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 
 #include "core/error.h"
-#include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 #include "io/files/xml_problem.h"
 #include "io/yaml/settings_yaml.h"
@@ -102,14 +101,13 @@ std::optional<std::string_view> sdf_refusal(std::string_view element) {
 }
 
 void SdfSource::fail(const tinyxml2::XMLElement& element, const std::string& what) const {
-  throw InputError(fmt::format("{}:{}: <{}>: {}", file_.string(), element.GetLineNum(), io::on_one_line(element.Name()),
-                               io::on_one_line(what)));
+  throw InputError(fmt::format("{}:{}: <{}>: {}", label_.string(), element.GetLineNum(),
+                               io::on_one_line(element.Name()), io::on_one_line(what)));
 }
 
-SdfSource::SdfSource(const std::filesystem::path& file, SdfContent content) : file_(file) {
-  const std::string text = io::load_text(file);
+SdfSource::SdfSource(const std::filesystem::path& label, std::string_view text, SdfContent content) : label_(label) {
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document_.RootElement() == nullptr)
-    throw input_error(file.string(), document_.ErrorLineNum(), "not XML: " + io::xml_problem(document_));
+    throw input_error(label.string(), document_.ErrorLineNum(), "not XML: " + io::xml_problem(document_));
   const tinyxml2::XMLElement& root = *document_.RootElement();
   if (std::string_view(root.Name()) != "sdf") fail(root, "must be <sdf>");
   const char* version = root.Attribute("version");
@@ -156,7 +154,7 @@ void SdfSource::leave_out_models(const std::set<std::string>& names) {
                                  ? fmt::format("it has {}{}", fmt::join(names_of_world, ", "), is_cut ? ", ..." : "")
                                  : fmt::format("did you mean {}?", match);
     throw InputError(
-        io::on_one_line(fmt::format("--without {}: is not a model of {}: {}", name, file_.string(), hint)));
+        io::on_one_line(fmt::format("--without {}: is not a model of {}: {}", name, label_.string(), hint)));
   }
 }
 

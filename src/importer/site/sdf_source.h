@@ -29,9 +29,9 @@ enum class SdfContent { kWorld, kModel };
 /// Text of an SDF file as XML: checks before libsdformat reads it, and places for its errors without a line.
 class SdfSource {
  public:
-  /// Leaves out elements (sdf_left_out.h). Throws InputError "file:line: what" unless the file is XML with a root <sdf>
+  /// Leaves out elements (sdf_left_out.h). `label`: the file, as in messages; `text`: its content. Throws InputError "file:line: what" unless the file is XML with a root <sdf>
   /// of version 1.0 to 1.12 and the content, and for the first element that is refused or is no geometry of the format.
-  SdfSource(const std::filesystem::path& file, SdfContent content);
+  SdfSource(const std::filesystem::path& label, std::string_view text, SdfContent content);
 
   /// Returns whether the file is a light or an actor alone, which are left out.
   bool is_left_out() const { return content_ != "world" && content_ != "model"; }
@@ -55,7 +55,8 @@ class SdfSource {
   /// libsdformat 12 reads, are replaced by it: they only add elements, which it copies, such as <cone>.
   std::string text() const;
 
-  const std::filesystem::path& file() const { return file_; }
+  /// Returns the file as in messages; its folder is that of the file.
+  const std::filesystem::path& label() const { return label_; }
 
   /// Throws InputError "file:line: <element>: what".
   [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& what) const;
@@ -84,7 +85,7 @@ class SdfSource {
   void check_content(SdfContent content);
   void check(const tinyxml2::XMLElement& element) const;
 
-  std::filesystem::path file_;
+  std::filesystem::path label_;
   tinyxml2::XMLDocument document_;
   std::string content_;
   std::vector<LeftOutElement> left_out_;

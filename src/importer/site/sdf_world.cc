@@ -85,7 +85,7 @@ std::string text_of_unlocated(const SdfSource& source, const sdf::Error& error, 
 }  // namespace
 
 SdfWorld::SdfWorld(const SiteImportOptions& options)
-    : models_(options.file, options.packages), files_(options.file, models_, options.without) {
+    : models_(options.file, options.packages), files_(options, models_) {
   sdf::Console::Instance()->SetQuiet(true);
   sdf::ParserConfig config;
   config.SetWarningsPolicy(sdf::EnforcementPolicy::LOG);
@@ -107,7 +107,8 @@ void SdfWorld::fail(const sdf::Errors& errors, const sdf::ParserConfig& config) 
     });
     if (is_cause) fail(file, of_file.front(), config);
   }
-  if (errors.empty()) throw InputError(files_.world().path.string() + ": a model that it includes is invalid");
+  if (errors.empty())
+    throw InputError(files_.world().source->label().string() + ": a model that it includes is invalid");
   const SdfFiles::File* file = files_.find_copy(errors.front().FilePath().value_or(""));
   fail(file != nullptr ? *file : files_.world(), errors.front(), config);
 }
@@ -134,7 +135,9 @@ void SdfWorld::fail(const sdf::ElementPtr& element, const std::string& what) con
 
 std::string SdfWorld::place_of(const std::filesystem::path& path, std::optional<int> line) const {
   const SdfFiles::File* copied = files_.find_copy(path);
-  const std::filesystem::path file = copied != nullptr ? copied->path : path.empty() ? files_.world().path : path;
+  const std::filesystem::path file = copied != nullptr ? copied->source->label()
+                                     : path.empty()    ? files_.world().source->label()
+                                                       : path;
   return file.string() + (line ? fmt::format(":{}", *line) : "");
 }
 

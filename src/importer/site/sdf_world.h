@@ -20,8 +20,9 @@ namespace patrol::importer {
 /// SDF world as libsdformat reads it, with its models included.
 class SdfWorld {
  public:
-  /// Reads a file with its models (SdfModels, SdfFiles). Uses `file`, `packages` and `without`. Throws InputError with one line, "file:line: what", for the
-  /// first error of these or of libsdformat, with the place in the world or in the included model.
+  /// Reads a file with its models (SdfModels, SdfFiles). The options must outlive the object. Throws InputError with
+  /// one line, "file:line: what", for the first error of these or of libsdformat, with the place in the world or in the
+  /// included model.
   explicit SdfWorld(const SiteImportOptions& options);
   SdfWorld(const SdfWorld&) = delete;
   SdfWorld& operator=(const SdfWorld&) = delete;

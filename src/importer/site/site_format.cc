@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/letter_case.h"
 #include "core/text.h"
+#include "importer/xacro.h"
 #include "io/points/point_reading.h"
 
 namespace patrol::importer {
@@ -44,6 +45,7 @@ const std::vector<FormatOption>& format_options() {
       {"--up", {SiteFormat::kMesh, SiteFormat::kCloud, SiteFormat::kScans}, "meshes, point clouds and scans"},
       {"--contact-cell", {SiteFormat::kMesh, SiteFormat::kSdf}, "meshes and SDF"},
       {"--package", {SiteFormat::kSdf}, "SDF"},
+      {"--xacro-arg", {SiteFormat::kSdf}, "SDF"},
       {"--without", {SiteFormat::kSdf}, "SDF"}};
   return options;
 }
@@ -52,15 +54,17 @@ const std::vector<FormatOption>& format_options() {
 
 SiteFormat site_format(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file)) return SiteFormat::kScans;
-  const std::string extension = to_lower(file.extension().string());
+  const bool has_xacro_name = is_xacro(file);
+  const std::string extension = to_lower((has_xacro_name ? file.stem() : file).extension().string());
   std::vector<std::string_view> known;
   for (const ExtensionFormat& row : kExtensions) {
-    if (extension == row.extension)
+    if (extension == row.extension && (!has_xacro_name || row.format == SiteFormat::kSdf))
       return extension == ".ply" && !io::has_faces(file) ? SiteFormat::kCloud : row.format;
     known.push_back(row.extension);
   }
-  throw InputError(fmt::format("{}: extension of a site file must be one of {}; a folder must contain scans",
-                               file.string(), patrol::join(known, ", ")));
+  throw InputError(fmt::format(
+      "{}: extension of a site file must be one of {}, .sdf.xacro, .world.xacro; a folder must contain scans",
+      file.string(), patrol::join(known, ", ")));
 }
 
 void refuse_unused_options(const std::filesystem::path& file, const std::vector<std::string>& options) {

@@ -40,6 +40,8 @@ struct SiteImportOptions {
   double contact_cell_m = 0.05;  ///< meshes and SDF: cell of the contact geometry
   std::map<std::string, std::filesystem::path> packages = {};  ///< SDF: folders of models, by name
   std::set<std::string> without = {};                          ///< SDF: names of models of the world to leave out
+  std::map<std::string, std::string> xacro_arguments = {};     ///< SDF: by name
+  std::string python = "python3";                              ///< SDF: interpreter that has the package xacro
   MissionOptions mission = {};
   ImportProgress on_progress = {};  ///< scans and points: called during the import; empty: not called
 };

@@ -17,11 +17,15 @@ TEST(SiteFormat, FollowsTheExtensionInAnyCase) {
   EXPECT_EQ(site_format("drive.LOG"), SiteFormat::kLog);
   EXPECT_EQ(site_format("drive.clf.gz"), SiteFormat::kLog);
   EXPECT_EQ(site_format("Hall.STL"), SiteFormat::kMesh);
+  EXPECT_EQ(site_format("hall.sdf.xacro"), SiteFormat::kSdf);
+  EXPECT_EQ(site_format("hall.world.xacro"), SiteFormat::kSdf);
   const test::TemporaryFolder folder;
   EXPECT_EQ(site_format(folder.path()), SiteFormat::kScans);
 }
 
 TEST(SiteFormat, UnknownExtensionsAreRefusedWithThoseOfLogsAndFoldersOfScans) {
+  EXPECT_THAT([] { site_format("robot.urdf.xacro"); },
+              ThrowsMessage<InputError>(HasSubstr(".sdf.xacro, .world.xacro")));
   EXPECT_THAT([] { site_format("room.dwg"); },
               ThrowsMessage<InputError>(testing::AllOf(HasSubstr("room.dwg: extension of a site file must be one of "),
                                                        HasSubstr(".mcap, .clf, .log, .gz"), HasSubstr("scans"))));
@@ -42,6 +46,8 @@ TEST(SiteFormat, OptionsWithoutEffectAreRefusedWithTheFormatsThatUseThem) {
             "--wall-height: has no effect on a.stl: only for floor plans and lidar logs");
   EXPECT_EQ(refusal("a.xml", "--contact-cell"), "--contact-cell: has no effect on a.xml: only for meshes and SDF");
   EXPECT_EQ(refusal("a.obj", "--package"), "--package: has no effect on a.obj: only for SDF");
+  EXPECT_EQ(refusal("a.obj", "--without"), "--without: has no effect on a.obj: only for SDF");
+  EXPECT_EQ(refusal("a.obj", "--xacro-arg"), "--xacro-arg: has no effect on a.obj: only for SDF");
   EXPECT_EQ(refusal("a.log", "--wall-height"), "accepted");
   EXPECT_EQ(refusal("a.world", "--contact-cell"), "accepted");
   EXPECT_EQ(refusal("a.pcd", "--scale"), "accepted");
