@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "io/files/one_line.h"
+#include "io/files/utf16_mark.h"
 #include "io/files/xml_problem.h"
 #include "io/yaml/settings_yaml.h"
 
@@ -29,8 +30,10 @@ constexpr std::array kRefusedElements = std::to_array<RefusedElement>({
     {"deletions", "deletions of a state are not supported: remove the models"},
 });
 
-/// Latest minor version of SDF 1 whose elements are known here.
-constexpr int kMaxMinorVersion = 12;
+/// Minor versions of SDF 1 whose elements are known here. libsdformat converts older ones only below a root <gazebo>,
+/// and reads their poses and sizes as the defaults otherwise.
+constexpr int kMinMinorVersion = 3, kMaxMinorVersion = 12;
+constexpr const char* kOldSyntaxHint = ": write <origin pose=\"...\"> as <pose>, and attributes as elements";
 
 const std::set<std::string_view> kGeometries = {"box",       "cone",  "capsule", "cylinder", "ellipsoid", "empty",
                                                 "heightmap", "image", "mesh",    "plane",    "polyline",  "sphere"};
@@ -74,6 +77,16 @@ class LinePrinter : public tinyxml2::XMLPrinter {
   int line_ = 1;
 };
 
+/// Refuses a text that is not XML because of its encoding, or because it is of another simulator.
+void refuse_other_text(const std::filesystem::path& label, std::string_view text) {
+  if (io::has_utf16_mark(text)) throw InputError(fmt::format("{}: {}", label.string(), io::kUtf16Refusal));
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (first == std::string_view::npos || text[first] == '<') return;
+  throw InputError(
+      label.string() +
+      ": not XML: must be SDF; of a world of Stage, import the picture of its map as a floor plan (.yaml)");
+}
+
 void add_includes(tinyxml2::XMLElement& element, std::vector<tinyxml2::XMLElement*>& includes) {
   if (is_opaque(element.Name())) return;
   for (auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
@@ -106,18 +119,21 @@ void SdfSource::fail(const tinyxml2::XMLElement& element, const std::string& wha
 }
 
 SdfSource::SdfSource(const std::filesystem::path& label, std::string_view text, SdfContent content) : label_(label) {
+  refuse_other_text(label, text);
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document_.RootElement() == nullptr)
     throw input_error(label.string(), document_.ErrorLineNum(), "not XML: " + io::xml_problem(document_));
   const tinyxml2::XMLElement& root = *document_.RootElement();
   if (std::string_view(root.Name()) != "sdf") fail(root, "must be <sdf>");
   const char* version = root.Attribute("version");
   const std::string_view digits = version == nullptr ? "" : version;
-  if (minor_sdf_version(digits).value_or(kMaxMinorVersion + 1) > kMaxMinorVersion)
-    fail(root, fmt::format("version = \"{}\": must be 1.0 to 1.{}", digits, kMaxMinorVersion));
+  const int minor = minor_sdf_version(digits).value_or(kMaxMinorVersion + 1);
+  if (minor < kMinMinorVersion || minor > kMaxMinorVersion)
+    fail(root, fmt::format("version = \"{}\": must be 1.{} to 1.{}{}", digits, kMinMinorVersion, kMaxMinorVersion,
+                           minor < kMinMinorVersion ? kOldSyntaxHint : ""));
   check_content(content);
   left_out_ = leave_out_elements(*document_.RootElement());
   check(root);
-  if (*minor_sdf_version(digits) > kMaxLibraryVersion)
+  if (minor > kMaxLibraryVersion)
     document_.RootElement()->SetAttribute("version", fmt::format("1.{}", kMaxLibraryVersion).c_str());
 }
 

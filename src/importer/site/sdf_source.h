@@ -29,8 +29,9 @@ enum class SdfContent { kWorld, kModel };
 /// Text of an SDF file as XML: checks before libsdformat reads it, and places for its errors without a line.
 class SdfSource {
  public:
-  /// Leaves out elements (sdf_left_out.h). `label`: the file, as in messages; `text`: its content. Throws InputError "file:line: what" unless the file is XML with a root <sdf>
-  /// of version 1.0 to 1.12 and the content, and for the first element that is refused or is no geometry of the format.
+  /// Leaves out elements (sdf_left_out.h). `label`: the file, as in messages; `text`: its content. Throws InputError
+  /// "file:line: what" unless the file is XML with a root <sdf> of version 1.3 to 1.12 and the content, and for the
+  /// first element that is refused or is no geometry of the format.
   SdfSource(const std::filesystem::path& label, std::string_view text, SdfContent content);
 
   /// Returns whether the file is a light or an actor alone, which are left out.

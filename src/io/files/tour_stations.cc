@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/letter_case.h"
 #include "io/files/line_reader.h"
+#include "io/files/utf16_mark.h"
 
 namespace patrol::io {
 namespace {
@@ -77,8 +78,7 @@ class StationReader {
       if (line->is_cut) refuse("is too long");
       std::string_view text = line->text;
       if (number_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-      if (number_ == 1 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")))
-        refuse("is encoded as UTF-16: must be UTF-8");
+      if (number_ == 1 && has_utf16_mark(text)) refuse(std::string(kUtf16Refusal));
       if (text.ends_with('\r')) text.remove_suffix(1);
       if (text.empty() && !columns_.empty()) continue;
       const std::vector<std::string> cells = split_cells(text, [&](const std::string& what) { refuse(what); });
