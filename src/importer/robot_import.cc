@@ -22,8 +22,8 @@ namespace patrol::importer {
 ImportedRobot import_robot(const RobotImportOptions& options) {
   const std::string file = options.file.string();
   const Packages packages(options.packages, options.file);
-  ExpandedFile loaded = load_expanded(options.file, {options.xacro_arguments, options.packages, options.python});
-  SourceRobot source = read_source_robot(loaded.label, loaded.text, packages);
+  const ExpandedFile loaded = load_expanded(options.file, {options.xacro_arguments, options.packages, options.python});
+  SourceRobot source = read_source_robot(file, loaded.text, packages);
   source.assumptions.insert(source.assumptions.begin(), loaded.rows.begin(), loaded.rows.end());
   release_fixed_wheels(source);
   const NormalizedRobot robot = normalize(source, {.name = options.name,
@@ -35,7 +35,7 @@ ImportedRobot import_robot(const RobotImportOptions& options) {
   require_folder_name(robot.name, file, "robot");
   std::map<std::string, std::string> sources;
   for (const auto& [link, name] : robot.source_links)
-    sources[link] = fmt::format("{}: {}", source.link(name).line, io::on_one_line(name));
+    sources[link] = fmt::format("{}: {}", source.location(source.link(name).line), io::on_one_line(name));
   const std::string origin = options.file.filename().string();
   return {
       .name = robot.name,
@@ -70,8 +70,7 @@ void write_robot(const ImportedRobot& robot, const std::filesystem::path& folder
     const auto named = end == std::string::npos ? robot.sources.end() : robot.sources.find(message.substr(0, end));
     if (named == robot.sources.end())
       throw InputError(fmt::format("{}: the robot cannot be simulated: {}", robot.file, message));
-    throw InputError(
-        fmt::format("{}:{}: the robot cannot be simulated: {}", robot.file, named->second, message.substr(end + 2)));
+    throw InputError(fmt::format("{}: the robot cannot be simulated: {}", named->second, message.substr(end + 2)));
   }
   output.publish();
 }

@@ -35,7 +35,7 @@ struct ImportedRobot {
   std::string settings;                                     ///< text of NAME.yaml
   std::vector<std::pair<std::string, std::string>> meshes;  ///< file name below meshes/, and OBJ text
   std::vector<Assumption> assumptions;
-  std::map<std::string, std::string> sources = {};  ///< link of `urdf` to "line: link" of the file, for messages
+  std::map<std::string, std::string> sources = {};  ///< link of `urdf` to "FILE:LINE: link", for messages
 };
 
 /// Reads a robot description and normalizes it (importer/README.md). Throws InputError with one line:

@@ -107,9 +107,10 @@ void SourceReader::report_misspelled_elements(const tinyxml2::XMLElement& root) 
       if (std::ranges::find(known->second, name) != known->second.end()) continue;
       const std::string meant = io::closest_match(name, known->second);
       if (meant.empty()) continue;
-      robot_.assumptions.push_back({.subject = fmt::format("<{}> in line {}", name, child->GetLineNum()),
-                                    .text = fmt::format("is left out: unknown element of <{}>", parent.Name()),
-                                    .override_with = fmt::format("<{}>, if it is meant", meant)});
+      robot_.assumptions.push_back(
+          {.subject = fmt::format("<{}> in {}", name, robot_.short_location(child->GetLineNum())),
+           .text = fmt::format("is left out: unknown element of <{}>", parent.Name()),
+           .override_with = fmt::format("<{}>, if it is meant", meant)});
     }
   };
   check(root);

@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "core/letter_case.h"
+#include "importer/xacro.h"
 #include "io/files/one_line.h"
 #include "io/files/xml_problem.h"
 
@@ -47,6 +48,7 @@ SourceReader::SourceReader(const std::string& file, const std::string& text, con
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     throw input_error(file, document_.ErrorLineNum(), "not an XML file: " + io::xml_problem(document_));
   }
+  robot_.positions = take_positions(document_);
 }
 
 std::vector<double> SourceReader::numbers(const XMLElement& element, const char* attribute, std::size_t count,
@@ -246,7 +248,7 @@ SourceInertial SourceReader::read_inertial(const XMLElement& element, const std:
 void SourceReader::read_link(const XMLElement& element) {
   SourceLink link{.name = required_name(element), .line = element.GetLineNum()};
   if (const SourceLink* other = robot_.find_link(link.name))
-    fail(element, link.name, fmt::format("duplicate link: also in line {}", other->line));
+    fail(element, link.name, "duplicate link: also in " + robot_.short_location(other->line));
   if (const XMLElement* inertial = element.FirstChildElement("inertial"))
     link.inertial = read_inertial(*inertial, link.name);
   for (const auto& [tag, shapes] : {std::pair{"visual", &link.visuals}, std::pair{"collision", &link.collisions}}) {
@@ -260,7 +262,7 @@ void SourceReader::read_link(const XMLElement& element) {
 void SourceReader::read_joint(const XMLElement& element) {
   SourceJoint joint{.name = required_name(element), .line = element.GetLineNum()};
   const auto [other, is_new] = joint_lines_.emplace(joint.name, joint.line);
-  if (!is_new) fail(element, joint.name, fmt::format("duplicate joint: also in line {}", other->second));
+  if (!is_new) fail(element, joint.name, "duplicate joint: also in " + robot_.short_location(other->second));
   const std::string type = attribute_text(element, "type");
   const auto found = kJointTypes.find(type);
   if (found == kJointTypes.end()) {

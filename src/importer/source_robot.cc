@@ -1,12 +1,14 @@
 #include "importer/source_robot.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <numbers>
 #include <set>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "importer/xacro.h"
 #include "io/files/one_line.h"
 
 namespace patrol::importer {
@@ -97,8 +99,17 @@ bool SourceRobot::moves_whole_robot(const SourceJoint& joint) const {
   return other_kg <= kNegligible * mass_kg;
 }
 
+std::string SourceRobot::location(int line) const {
+  return location_in(file, positions, line);
+}
+
+std::string SourceRobot::short_location(int line) const {
+  if (positions.empty()) return fmt::format("line {}", line);
+  return std::filesystem::path(location(line)).filename().string();
+}
+
 void SourceRobot::fail(int line, const std::string& element, const std::string& what) const {
-  throw input_error(file, line, fmt::format("{}: {}", io::on_one_line(element), what));
+  throw InputError(fmt::format("{}: {}: {}", location(line), io::on_one_line(element), what));
 }
 
 }  // namespace patrol::importer

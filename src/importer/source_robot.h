@@ -94,8 +94,9 @@ struct SourceSensor {
 
 /// Vendor's robot description as written: a tree of links and joints.
 struct SourceRobot {
-  std::string file;  ///< for messages; of an expanded xacro file with a remark
+  std::string file;  ///< for messages
   std::string name;
+  std::map<int, std::string> positions = {};  ///< of an expanded xacro file: line to "FILE:LINE" in its xacro file
   std::vector<SourceLink> links;
   std::vector<SourceJoint> joints;
   std::set<std::string> motors;  ///< joints named by a transmission, a command interface or a drive plugin
@@ -120,6 +121,11 @@ struct SourceRobot {
   /// Whether a joint moves the whole robot in the world, as planners need it: the links that it does not move have no
   /// shapes and at most 1 % of the mass. Above a floating joint they may have visuals, which mark the world.
   bool moves_whole_robot(const SourceJoint& joint) const;
+
+  /// Returns "FILE:LINE" for messages; of an expanded xacro file in the xacro file that has the element.
+  std::string location(int line) const;
+  /// Returns "line LINE" for texts about the file; of an expanded xacro file "NAME:LINE" without the folder.
+  std::string short_location(int line) const;
 
   [[noreturn]] void fail(int line, const std::string& element, const std::string& what) const;
 

@@ -53,6 +53,7 @@ class WheelFinder {
   void refuse_one_low_wheel() const;
   void keep_wheels_on_ground();
   void leave_out_passive_balls();
+  std::string reason_without_wheels() const;
   std::vector<AxialShape> axial_shapes(const std::vector<const SourceLink*>& links, const Pose3& T_root_axis,
                                        bool is_visual) const;
 
@@ -333,17 +334,27 @@ bool WheelFinder::has_candidates() {
   return !found_.wheels.empty();
 }
 
+/// Returns the joint that most likely should turn a wheel and why it does not: a fixed one with a motor and a
+/// horizontal axis, otherwise the last candidate; empty if there is none.
+std::string WheelFinder::reason_without_wheels() const {
+  for (const SourceJoint& joint : robot_.joints) {
+    const Eigen::Vector3d axis = T_root_link_.at(joint.child).rotation * joint.axis;
+    if (joint.type != JointType::kFixed || !robot_.motors.contains(joint.name)) continue;
+    if (std::abs(axis.z()) <= kHorizontal)
+      return fmt::format(" ({}: {}: has a motor, but is fixed)", robot_.short_location(joint.line), joint.name);
+  }
+  if (found_.rejected.empty()) return "";
+  const RejectedWheel& last = found_.rejected.back();
+  return fmt::format(" ({}: {}: {})", robot_.short_location(last.joint->line), last.joint->child, last.reason);
+}
+
 FoundWheels WheelFinder::find() {
   find_candidates();
   if (found_.wheels.empty()) {
-    const std::string reason = found_.rejected.empty()
-                                   ? ""
-                                   : fmt::format(" (line {}: {}: {})", found_.rejected.back().joint->line,
-                                                 found_.rejected.back().joint->child, found_.rejected.back().reason);
     throw InputError(fmt::format(
         "{}: no wheels found: a wheel is a round link on a continuous joint about a horizontal axis that touches the "
         "ground{}; no legs either: a robot that walks has four, each of three revolute joints one behind the other",
-        robot_.file, reason));
+        robot_.file, reason_without_wheels()));
   }
   check_upright();
   keep_wheels_on_ground();

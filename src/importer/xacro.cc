@@ -16,88 +16,12 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "importer/xacro_script.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 
 namespace patrol::importer {
 namespace {
-
-/// Script that calls xacro: arguments FILE, N, N times NAME=FOLDER of packages, then NAME=VALUE of xacro arguments.
-/// $(find PKG) is searched as by the class Packages. Exit status 3: xacro is not installed; 4:
-/// the expansion failed, with the message on the standard output.
-constexpr const char* kScript = R"py(
-import os, re, sys
-try:
-    import xacro
-    from xacro import substitution_args
-except ImportError as error:
-    sys.stderr.write(str(error))
-    sys.exit(3)
-import xml.dom.minidom
-file, count = os.path.abspath(sys.argv[1]), int(sys.argv[2])
-given = dict(word.split('=', 1) for word in sys.argv[3:3 + count])
-mappings = dict(word.split('=', 1) for word in sys.argv[3 + count:])
-
-def package_name(folder):
-    try:
-        names = xml.dom.minidom.parse(os.path.join(folder, 'package.xml')).getElementsByTagName('name')
-        return names[0].firstChild.data.strip()
-    except Exception:
-        return ''
-
-def find(package):
-    if package in given:
-        return os.path.abspath(given[package])
-    folder = os.path.dirname(file)
-    while True:
-        if os.path.basename(folder) == package or package_name(folder) == package:
-            return folder
-        if os.path.isdir(os.path.join(folder, package)):
-            return os.path.join(folder, package)
-        above = os.path.dirname(folder)
-        if os.path.exists(os.path.join(folder, 'package.xml')):
-            for name in sorted(os.listdir(above)):
-                if package_name(os.path.join(above, name)) == package:
-                    return os.path.join(above, name)
-        if above == folder:
-            raise Exception('unknown package "%s": give its folder with --package %s=FOLDER' % (package, package))
-        folder = above
-
-def location_of(message):
-    """File of the error with the line, if one line of it has the text that the message quotes."""
-    stack = xacro.macrostack or []
-    at = stack[-1].history[-1][-1] if stack else (xacro.filestack or [file])[-1]
-    at = at or file
-    quoted = re.findall("evaluating expression '(.*?)'", message)[-1:] or re.findall('package "(.*?)"', message)
-    if not quoted:
-        quoted = [os.path.basename(path) for path in re.findall('directory: ([^ ]*)', message)]
-    try:
-        with open(at, encoding='utf-8') as text:
-            lines = [i for i, line in enumerate(text, 1) if quoted and quoted[0] in line]
-    except Exception:
-        lines = []
-    if os.path.abspath(at) == file:
-        at = sys.argv[1]
-    return '%s:%d' % (at, lines[0]) if len(lines) == 1 else at
-
-def macros():
-    names = [macro.body.getAttribute('name') for macro in reversed(xacro.macrostack or [])]
-    return ''.join(', in macro %s' % name for name in dict.fromkeys(names))
-
-substitution_args._eval_find = find
-substitution_args._eval_dict['find'] = find
-try:
-    text = xacro.process_file(file, mappings=mappings).toprettyxml(indent='  ', encoding='utf-8')
-except BaseException as error:
-    message = str(error) or type(error).__name__
-    if not isinstance(error, xacro.XacroException):
-        message = '%s: %s' % (type(error).__name__, error)
-    message = re.sub(r" \[Errno \d+\].*$", '', ' '.join(message.split()).replace("<class 'Exception'>: ", ''))
-    message = re.sub(r'^(.+) \1$', r'\1', message)
-    print('%s: xacro: %s%s' % (location_of(message), message, macros()))
-    sys.exit(4)
-sys.stdout.buffer.write(text)
-)py";
 
 /// Output of a finished program.
 struct Output {
@@ -198,6 +122,15 @@ bool has_xacro(const tinyxml2::XMLElement& element) {
   return false;
 }
 
+void take_positions_of(tinyxml2::XMLElement& element, std::map<int, std::string>& positions) {
+  if (const char* position = element.Attribute(kPositionAttribute)) {
+    positions.try_emplace(element.GetLineNum(), position);
+    element.DeleteAttribute(kPositionAttribute);
+  }
+  for (auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
+    take_positions_of(*child, positions);
+}
+
 }  // namespace
 
 bool has_xacro_text(const std::string& text) {
@@ -210,11 +143,15 @@ bool has_xacro_text(const std::string& text) {
 bool is_xacro(const std::filesystem::path& file) { return file.extension() == ".xacro"; }
 
 ExpandedFile load_expanded(const std::filesystem::path& file, const XacroOptions& options) {
-  ExpandedFile loaded{.text = io::load_text(file), .label = file.string()};
+  ExpandedFile loaded{.text = io::load_text(file)};
   const bool is_hidden = !is_xacro(file) && has_xacro_text(loaded.text);
-  if (!is_hidden && !is_xacro(file)) return loaded;
+  if (!is_hidden && !is_xacro(file)) {
+    if (options.arguments.empty()) return loaded;
+    throw InputError(fmt::format("{}: --xacro-arg {}: unknown argument: the file has no expressions of xacro",
+                                 file.string(), io::on_one_line(options.arguments.begin()->first)));
+  }
   loaded.text = expand_xacro(file, options);
-  loaded.label += " (expanded)";
+  loaded.is_expanded = true;
   if (is_hidden)
     loaded.rows.push_back({.subject = file.filename().string(),
                            .text = "has expressions of xacro and is expanded by xacro",
@@ -222,10 +159,23 @@ ExpandedFile load_expanded(const std::filesystem::path& file, const XacroOptions
   return loaded;
 }
 
+std::map<int, std::string> take_positions(tinyxml2::XMLDocument& document) {
+  std::map<int, std::string> positions;
+  if (tinyxml2::XMLElement* root = document.RootElement()) take_positions_of(*root, positions);
+  return positions;
+}
+
+std::string location_in(const std::string& file, const std::map<int, std::string>& positions, int line) {
+  const auto found = positions.find(line);
+  if (found != positions.end()) return found->second;
+  return positions.empty() && line > 0 ? fmt::format("{}:{}", file, line) : file;
+}
+
 std::string expand_xacro(const std::filesystem::path& file, const XacroOptions& options) {
   const char* named = std::getenv("PATROL_PYTHON");
   const std::string interpreter = named != nullptr && *named != '\0' ? named : options.python;
-  std::vector<std::string> words = {interpreter, "-c", kScript, file.string(), std::to_string(options.packages.size())};
+  std::vector<std::string> words = {
+      interpreter, "-c", kXacroScript, file.string(), kPositionAttribute, std::to_string(options.packages.size())};
   for (const auto& [name, folder] : options.packages) words.push_back(name + "=" + folder.string());
   for (const auto& [name, value] : options.arguments) words.push_back(name + "=" + value);
   Output output = run_python(words);

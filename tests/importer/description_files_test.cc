@@ -115,7 +115,8 @@ TEST(PublicDescription, AUrdfFileWithExpressionsOfXacroIsExpandedOrNamesWhatIsMi
   const std::string message = complaint(import);
   if (has_xacro) {
     EXPECT_EQ(message, "");
-    EXPECT_THAT(import.assumptions(), HasSubstr("| vendor.urdf | has expressions of xacro and is expanded by xacro"));
+    EXPECT_THAT(import.assumptions(), HasSubstr("| vendor.urdf | has expressions of xacro and is expanded by xacro | "
+                                                "--xacro-arg NAME=VALUE and environment variables"));
     EXPECT_THAT(import.description.T_body_sensor.at("camera").position,
                 test::VectorNear(Eigen::Vector3d(0.1, 0.0, 0.2), 1e-9));
   } else {

@@ -86,6 +86,19 @@ TEST(ImportRobot, AFixedJointWhoseLimitsExcludeZeroIsARow) {
   EXPECT_THAT(inside.assumptions(), Not(HasSubstr("outside its limits")));
 }
 
+TEST(ImportRobot, WithoutWheelsTheMessageNamesAFixedJointWithAMotorAboutAHorizontalAxis) {
+  const auto motor = [](const std::string& name) {
+    return "<transmission name=\"of_" + name + "\"><joint name=\"" + name + "\"/></transmission>\n";
+  };
+  Import import(robot(chassis() + motor("swivel") + motor("roll") +
+                      joint("swivel", "fixed", "base_link", "fork", "0.2 0 -0.1", axis("0 0 1")) + link("fork") +
+                      joint("roll", "fixed", "fork", "rear", "0 0 0", axis("0 1 0")) +
+                      link("rear", inertial(1.0) + shape("collision", box(0.1, 0.1, 0.1))) +
+                      joint("wrist", "continuous", "base_link", "hand", "0.3 0 0.4", axis("1 0 0")) +
+                      link("hand", inertial(0.1) + shape("collision", box(0.1, 0.2, 0.1)))));
+  EXPECT_THAT(complaint(import), HasSubstr(": roll: has a motor, but is fixed); no legs either"));
+}
+
 TEST(ImportRobot, AWheelOnASuspensionIsFixedToTheChassis) {
   const std::string suspended = joint("spring", "prismatic", "base_link", "arm", "0 0.25 -0.05",
                                       axis("0 0 1") + R"(<limit lower="-0.1" upper="0.1" effort="5" velocity="1"/>)") +

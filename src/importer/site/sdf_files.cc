@@ -74,9 +74,11 @@ const SdfFiles::File* SdfFiles::find(const std::filesystem::path& path) const {
 }
 
 SdfFiles::File SdfFiles::read(const std::filesystem::path& path, SdfContent content) {
-  const ExpandedFile loaded = load_expanded(path, {options_.xacro_arguments, options_.packages, options_.python});
+  XacroOptions xacro{.arguments = {}, .packages = options_.packages, .python = options_.python};
+  if (content == SdfContent::kWorld) xacro.arguments = options_.xacro_arguments;
+  const ExpandedFile loaded = load_expanded(path, xacro);
   rows_.insert(rows_.end(), loaded.rows.begin(), loaded.rows.end());
-  return {.path = path, .copy = {}, .source = std::make_unique<SdfSource>(loaded.label, loaded.text, content)};
+  return {.path = path, .copy = {}, .source = std::make_unique<SdfSource>(path, loaded.text, content)};
 }
 
 const SdfFiles::File& SdfFiles::add(File file) {
@@ -86,8 +88,8 @@ const SdfFiles::File& SdfFiles::add(File file) {
     // Without <uri>, libsdformat refuses it.
     if (include->FirstChildElement("uri") != nullptr) take(*file.source, *include, file.num_models);
     if (file.num_models > kMaxModels)
-      throw input_error(file.source->label().string(), line,
-                        fmt::format("<include>: {} models: must be at most {}", file.num_models, kMaxModels));
+      throw InputError(fmt::format("{}: <include>: {} models: must be at most {}", file.source->location(line),
+                                   file.num_models, kMaxModels));
   }
   open_.pop_back();
   file.copy = folder_.path() / fmt::format("{}.sdf", files_.size());
@@ -119,10 +121,10 @@ void SdfFiles::take(SdfSource& source, tinyxml2::XMLElement& include, std::size_
 
 std::optional<std::filesystem::path> SdfFiles::resolve(const SdfSource& source, const tinyxml2::XMLElement& element) {
   const auto fail = [&](const std::string& what) {
-    return input_error(source.label().string(), element.GetLineNum(), io::on_one_line(what));
+    return InputError(source.location(element.GetLineNum()) + ": " + io::on_one_line(what));
   };
   const std::string uri = trimmed(element.GetText());
-  auto path = models_.find_uri(uri, std::filesystem::absolute(source.label()).parent_path());
+  auto path = models_.find_uri(uri, std::filesystem::absolute(source.file()).parent_path());
   std::error_code error;
   if (!path && uri == std::string(kModelScheme) + name_in(uri)) path = built_in(name_in(uri));
   if (!is_of_network(uri) && (!path || !std::filesystem::exists(*path, error))) {
@@ -130,7 +132,7 @@ std::optional<std::filesystem::path> SdfFiles::resolve(const SdfSource& source, 
     if (const std::string found = sdf::findFile(uri, true, false); !found.empty()) path = found;
   }
   if (!path && !name_in(uri).empty()) {
-    missing_.push_back({fmt::format("{}:{}", source.label().string(), element.GetLineNum()), uri});
+    missing_.push_back({source.location(element.GetLineNum()), uri});
     return std::nullopt;
   }
   if (!path) throw fail(fmt::format("<include>: {}: names no model", uri));

@@ -78,12 +78,12 @@ class LinePrinter : public tinyxml2::XMLPrinter {
 };
 
 /// Refuses a text that is not XML because of its encoding, or because it is of another simulator.
-void refuse_other_text(const std::filesystem::path& label, std::string_view text) {
-  if (io::has_utf16_mark(text)) throw InputError(fmt::format("{}: {}", label.string(), io::kUtf16Refusal));
+void refuse_other_text(const std::filesystem::path& file, std::string_view text) {
+  if (io::has_utf16_mark(text)) throw InputError(fmt::format("{}: {}", file.string(), io::kUtf16Refusal));
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   if (first == std::string_view::npos || text[first] == '<') return;
   throw InputError(
-      label.string() +
+      file.string() +
       ": not XML: must be SDF; of a world of Stage, import the picture of its map as a floor plan (.yaml)");
 }
 
@@ -114,14 +114,15 @@ std::optional<std::string_view> sdf_refusal(std::string_view element) {
 }
 
 void SdfSource::fail(const tinyxml2::XMLElement& element, const std::string& what) const {
-  throw InputError(fmt::format("{}:{}: <{}>: {}", label_.string(), element.GetLineNum(),
-                               io::on_one_line(element.Name()), io::on_one_line(what)));
+  throw InputError(fmt::format("{}: <{}>: {}", location(element.GetLineNum()), io::on_one_line(element.Name()),
+                               io::on_one_line(what)));
 }
 
-SdfSource::SdfSource(const std::filesystem::path& label, std::string_view text, SdfContent content) : label_(label) {
-  refuse_other_text(label, text);
+SdfSource::SdfSource(const std::filesystem::path& file, std::string_view text, SdfContent content) : file_(file) {
+  refuse_other_text(file, text);
   if (document_.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS || document_.RootElement() == nullptr)
-    throw input_error(label.string(), document_.ErrorLineNum(), "not XML: " + io::xml_problem(document_));
+    throw input_error(file.string(), document_.ErrorLineNum(), "not XML: " + io::xml_problem(document_));
+  positions_ = take_positions(document_);
   const tinyxml2::XMLElement& root = *document_.RootElement();
   if (std::string_view(root.Name()) != "sdf") fail(root, "must be <sdf>");
   const char* version = root.Attribute("version");
@@ -170,7 +171,7 @@ void SdfSource::leave_out_models(const std::set<std::string>& names) {
                                  ? fmt::format("it has {}{}", fmt::join(names_of_world, ", "), is_cut ? ", ..." : "")
                                  : fmt::format("did you mean {}?", match);
     throw InputError(
-        io::on_one_line(fmt::format("--without {}: is not a model of {}: {}", name, label_.string(), hint)));
+        io::on_one_line(fmt::format("--without {}: is not a model of {}: {}", name, file_.string(), hint)));
   }
 }
 

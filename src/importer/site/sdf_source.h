@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -11,6 +12,7 @@
 #include <tinyxml2.h>
 
 #include "importer/site/sdf_left_out.h"
+#include "importer/xacro.h"
 
 namespace patrol::importer {
 
@@ -29,10 +31,10 @@ enum class SdfContent { kWorld, kModel };
 /// Text of an SDF file as XML: checks before libsdformat reads it, and places for its errors without a line.
 class SdfSource {
  public:
-  /// Leaves out elements (sdf_left_out.h). `label`: the file, as in messages; `text`: its content. Throws InputError
+  /// Leaves out elements (sdf_left_out.h). `text`: content of the file, or its expansion by xacro. Throws InputError
   /// "file:line: what" unless the file is XML with a root <sdf> of version 1.3 to 1.12 and the content, and for the
   /// first element that is refused or is no geometry of the format.
-  SdfSource(const std::filesystem::path& label, std::string_view text, SdfContent content);
+  SdfSource(const std::filesystem::path& file, std::string_view text, SdfContent content);
 
   /// Returns whether the file is a light or an actor alone, which are left out.
   bool is_left_out() const { return content_ != "world" && content_ != "model"; }
@@ -56,8 +58,11 @@ class SdfSource {
   /// libsdformat 12 reads, are replaced by it: they only add elements, which it copies, such as <cone>.
   std::string text() const;
 
-  /// Returns the file as in messages; its folder is that of the file.
-  const std::filesystem::path& label() const { return label_; }
+  const std::filesystem::path& file() const { return file_; }
+  /// Returns "FILE:LINE" of an element that begins in a line of the text, for messages; of an expanded text in the xacro
+  /// file that has the element.
+  std::string location(int line) const { return location_in(file_.string(), positions_, line); }
+  bool is_expanded() const { return !positions_.empty(); }
 
   /// Throws InputError "file:line: <element>: what".
   [[noreturn]] void fail(const tinyxml2::XMLElement& element, const std::string& what) const;
@@ -86,7 +91,8 @@ class SdfSource {
   void check_content(SdfContent content);
   void check(const tinyxml2::XMLElement& element) const;
 
-  std::filesystem::path label_;
+  std::filesystem::path file_;
+  std::map<int, std::string> positions_;  ///< of the elements of an expanded text (xacro.h)
   tinyxml2::XMLDocument document_;
   std::string content_;
   std::vector<LeftOutElement> left_out_;

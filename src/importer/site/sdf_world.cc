@@ -108,7 +108,7 @@ void SdfWorld::fail(const sdf::Errors& errors, const sdf::ParserConfig& config) 
     if (is_cause) fail(file, of_file.front(), config);
   }
   if (errors.empty())
-    throw InputError(files_.world().source->label().string() + ": a model that it includes is invalid");
+    throw InputError(files_.world().source->file().string() + ": a model that it includes is invalid");
   const SdfFiles::File* file = files_.find_copy(errors.front().FilePath().value_or(""));
   fail(file != nullptr ? *file : files_.world(), errors.front(), config);
 }
@@ -135,13 +135,14 @@ void SdfWorld::fail(const sdf::ElementPtr& element, const std::string& what) con
 
 std::string SdfWorld::place_of(const std::filesystem::path& path, std::optional<int> line) const {
   const SdfFiles::File* copied = files_.find_copy(path);
-  const std::filesystem::path file = copied != nullptr ? copied->source->label()
-                                     : path.empty()    ? files_.world().source->label()
-                                                       : path;
-  return file.string() + (line ? fmt::format(":{}", *line) : "");
+  if (copied == nullptr && path.empty()) copied = &files_.world();
+  if (copied != nullptr) return copied->source->location(line.value_or(0));
+  return path.string() + (line ? fmt::format(":{}", *line) : "");
 }
 
 std::string SdfWorld::short_location_of(const SdfFiles::File& file, std::optional<int> line) const {
+  if (file.source->is_expanded())
+    return std::filesystem::path(file.source->location(line.value_or(0))).filename().string();
   if (&file == &files_.world()) return line ? fmt::format("line {}", *line) : std::string();
   return (file.path.parent_path().filename() / file.path.filename()).string() + (line ? fmt::format(":{}", *line) : "");
 }

@@ -56,7 +56,7 @@ TEST(SdfSource, XacroIsExpandedByNameAndByText) {
   }
   EXPECT_THAT(SiteFileImport("a.sdf", xacro_world(kWall)).error(), StartsWith("a.sdf"));
   EXPECT_THAT(SiteFileImport("a.sdf", xacro_world("<xacro:property name=\"x\" value=\"1\"/><model name='m'/>")).error(),
-              HasSubstr("a.sdf (expanded):"));
+              HasSubstr("a.sdf:"));
 }
 
 }  // namespace
