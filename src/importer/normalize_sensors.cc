@@ -12,7 +12,6 @@
 #include "core/geometry/angles.h"
 #include "core/geometry/convex_polygon.h"
 #include "core/letter_case.h"
-#include "core/sensors/lidar.h"
 #include "importer/hull.h"
 #include "importer/normalizer.h"
 
@@ -93,49 +92,27 @@ std::string links_named(const std::set<std::string>& links, std::initializer_lis
   return named.empty() ? "" : fmt::format("; links with such a name: {}", list_of(named));
 }
 
-/// Returns the preset whose field of view and range are those of a lidar; empty if there is none.
-std::string preset_of(const SourceSensor& sensor, bool is_3d) {
-  constexpr double kFov_deg = 5.0, kRange = 0.1;
-  for (const char* name : {"rplidar_s2", "utm30lx", "tim571", "vlp16"}) {
-    const LidarSettings preset = LidarSettings::of_preset(name);
-    const bool has_fov = std::abs(preset.fov_deg - sensor.fov_deg) <= kFov_deg;
-    const bool has_range = std::abs(preset.range_max_m / sensor.range_max_m - 1.0) <= kRange;
-    if ((preset.rings > 1) == is_3d && has_fov && has_range) return name;
-  }
-  return "";
-}
-
 }  // namespace
 
-/// Chooses the preset of a lidar by the numbers of the file, if it states them.
-void Normalizer::choose_preset(const std::string& frame, const SourceSensor& sensor) {
-  if (!frame.starts_with("lidar") || sensor.fov_deg <= 0.0 || sensor.range_max_m <= 0.0) return;
-  const std::string preset = preset_of(sensor, frame == "lidar3d");
-  const std::string key = fmt::format("sensors.{}.preset in {}.yaml", frame, result_.name);
-  if (preset.empty()) {
-    assume(
-        frame,
-        fmt::format("no preset has its field of view of {:.0f} degrees and its range of {:.3g} m: the default preset "
-                    "is simulated",
-                    sensor.fov_deg, sensor.range_max_m),
-        key);
-    return;
-  }
-  result_.presets[frame] = preset;
-  assume(frame, fmt::format("is simulated as {}, by its field of view and its range", preset), key);
+/// Returns the frame that an option gives to a sensor of the file, by its link; none if no option does.
+std::optional<std::string> Normalizer::frame_by_option(const SourceSensor& sensor) const {
+  const auto found = std::ranges::find_if(options_.frames, [&sensor](const auto& option) {
+    const std::string& kind = option.first == "lidar_rear" ? "lidar" : option.first;
+    return kind == sensor.frame && option.second == sensor.link;
+  });
+  return found == options_.frames.end() ? std::nullopt : std::optional(found->first);
 }
 
 /// Returns the sensors of the file with the 2D lidars in the order in which they get frames: the one that looks most
 /// forward, the one that looks most backward, then the others.
 std::vector<SourceSensor> Normalizer::sensors_in_order() {
   constexpr double kSameYaw_rad = 0.02;
-  const auto chosen = options_.frames.find("lidar");
-  const bool has_lidar = chosen != options_.frames.end();
+  const bool has_lidar = options_.frames.contains("lidar");
   std::vector<SourceSensor> sensors = source_.sensors, lidars;
   std::vector<std::size_t> slots;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     if (sensors[i].frame != "lidar" || !chassis_.contains(sensors[i].link)) continue;
-    if (has_lidar && chosen->second == sensors[i].link) continue;
+    if (frame_by_option(sensors[i])) continue;
     slots.push_back(i);
     lidars.push_back(sensors[i]);
   }
@@ -175,6 +152,9 @@ void Normalizer::add_sensors() {
     move_housing(frame, link);
     clear_origin(frame, link);
     check_scan_plane(frame);
+    const auto sensor =
+        std::ranges::find_if(source_.sensors, [&](const SourceSensor& each) { return frame_by_option(each) == frame; });
+    choose_lidar(frame, sensor == source_.sensors.end() ? LidarNumbers{} : sensor->stated);
     added.insert(frame);
   }
   for (const SourceSensor& sensor : sensors_in_order()) {
@@ -183,11 +163,7 @@ void Normalizer::add_sensors() {
              fmt::format("--frame {}=LINK", sensor.frame));
       continue;
     }
-    const auto chosen = options_.frames.find(sensor.frame);
-    if (chosen != options_.frames.end() && chosen->second == sensor.link) {
-      choose_preset(sensor.frame, sensor);
-      continue;
-    }
+    if (frame_by_option(sensor)) continue;
     std::string frame = sensor.frame;
     if (frame == "lidar" && added.contains(frame)) frame = "lidar_rear";
     const Pose3 T_base_sensor = T_base(sensor.link) * sensor.T_link_sensor;
@@ -203,7 +179,7 @@ void Normalizer::add_sensors() {
     move_housing(frame, sensor.link);
     clear_origin(frame, sensor.link);
     check_scan_plane(frame);
-    choose_preset(frame, sensor);
+    choose_lidar(frame, sensor.stated);
   }
   for (const auto& [frame, links] : others)
     assume(frame, fmt::format("further sensors of this type are left out: {}", list_of(links)),

@@ -159,7 +159,8 @@ class Normalizer {
   void move_housing(const std::string& frame, const std::string& link);
   void clear_origin(const std::string& frame, const std::string& link);
   void check_scan_plane(const std::string& frame);
-  void choose_preset(const std::string& frame, const SourceSensor& sensor);
+  std::optional<std::string> frame_by_option(const SourceSensor& sensor) const;
+  void choose_lidar(const std::string& frame, const LidarNumbers& stated);
   void choose_scan_band();
   void choose_keep_out_margin(double width_m);
   void check_densities();

@@ -98,9 +98,9 @@ std::string settings_of(const NormalizedRobot& robot, const std::string& comment
   // Absent sensors have no row: a mount that the user adds switches its sensor on.
   for (const char* frame : {"lidar", "lidar_rear", "lidar3d", "gnss", "depth_camera", "tdlas", "uwb"}) {
     if (std::ranges::find(robot.sensor_frames, frame) == robot.sensor_frames.end()) continue;
-    const auto chosen = robot.presets.find(frame);
-    const std::string preset = chosen == robot.presets.end() ? "" : ", preset: " + chosen->second;
-    text += fmt::format("  {}: {{enabled: true{}}}\n", frame, preset);
+    const auto chosen = robot.lidars.find(frame);
+    text +=
+        fmt::format("  {}: {{enabled: true{}}}\n", frame, chosen == robot.lidars.end() ? "" : ", " + chosen->second);
   }
   return text + (robot.drive == DriveType::kLegs ? leg_settings(robot) : wheel_settings(robot));
 }

@@ -68,12 +68,18 @@ class SourceReader {
   Eigen::Vector3d read_scale(const tinyxml2::XMLElement& element, const std::string& link);
   void read_mesh(const tinyxml2::XMLElement& element, const std::string& link, Shape& shape);
   void read_motors(const tinyxml2::XMLElement& root);
+  void read_command_limits(const tinyxml2::XMLElement& control, const std::string& name);
   void read_plugin(const tinyxml2::XMLElement& plugin);
   void read_sensors(const tinyxml2::XMLElement& root);
   void read_gazebo_sensor(const tinyxml2::XMLElement& sensor, const std::string& link);
+  double number_of(const tinyxml2::XMLElement& element, const char* raw, const std::string& subject,
+                   const std::string& name, const char* owner) const;
   std::optional<double> sensor_number(const tinyxml2::XMLElement& element, const char* name,
                                       const std::string& link) const;
-  void read_scan_field(const tinyxml2::XMLElement& sensor, SourceSensor& found);
+  void read_scan(const tinyxml2::XMLElement& sensor, SourceSensor& found);
+  void read_field_of_view(const tinyxml2::XMLElement& horizontal, SourceSensor& found);
+  void read_rings(const tinyxml2::XMLElement& vertical, SourceSensor& found) const;
+  void read_range(const tinyxml2::XMLElement& range, SourceSensor& found);
   void report_unknown_link(const std::string& link, int line, const std::string& override_with);
   void check_tree() const;
   void check_mimics() const;

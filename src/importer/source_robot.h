@@ -82,14 +82,16 @@ struct SourceJoint {
   bool is_endless() const;
 };
 
+/// Numbers that the description states of a lidar, by the key of LidarSettings (core/sensors/lidar.h).
+using LidarNumbers = std::map<std::string, double>;
+
 /// Sensor of the description.
 struct SourceSensor {
   std::string frame = {};  ///< sensor frame of Patrol: lidar, lidar3d, imu, gnss, depth_camera
   std::string link = {};
   Pose3 T_link_sensor = {};
   int line = 0;
-  double fov_deg = 0.0;      ///< horizontal field of view of a lidar; 0: not stated
-  double range_max_m = 0.0;  ///< maximum range of a lidar; 0: not stated
+  LidarNumbers stated = {};  ///< lidars only
 };
 
 /// Vendor's robot description as written: a tree of links and joints.

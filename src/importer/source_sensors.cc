@@ -47,8 +47,35 @@ void SourceReader::read_motors(const XMLElement& root) {
       const std::string name =
           joint->Attribute("name") != nullptr ? attribute_text(*joint, "name") : trimmed(joint->GetText());
       robot_.motors.insert(name);
+      if (needs_interface) read_command_limits(*joint, name);
     }
   });
+}
+
+/// Takes the limits of speed and torque of a joint from its command interfaces, if they are below those of <limit>.
+void SourceReader::read_command_limits(const XMLElement& control, const std::string& name) {
+  const auto joint = std::ranges::find(robot_.joints, name, &SourceJoint::name);
+  if (joint == robot_.joints.end()) return;
+  for (const XMLElement* interface = control.FirstChildElement("command_interface"); interface != nullptr;
+       interface = interface->NextSiblingElement("command_interface")) {
+    const std::string kind = attribute_text(*interface, "name");
+    if (kind != "velocity" && kind != "effort") continue;
+    double limit = 0.0;
+    for (const XMLElement* param = interface->FirstChildElement("param"); param != nullptr;
+         param = param->NextSiblingElement("param")) {
+      const std::string bound = attribute_text(*param, "name");
+      if (bound == "min" || bound == "max")
+        limit = std::max(limit, std::abs(number_of(*param, param->GetText(), name, bound, "command interface")));
+    }
+    std::optional<double>& stated = kind == "velocity" ? joint->velocity : joint->effort;
+    if (limit <= 0.0 || !std::isfinite(limit) || (stated.value_or(0.0) > 0.0 && *stated <= limit)) continue;
+    stated = limit;
+    robot_.assumptions.push_back(
+        {.subject = name,
+         .text = fmt::format("{} limit {:.4g} {} is that of its command interface",
+                             kind == "velocity" ? "speed" : "torque", limit, kind == "velocity" ? "rad/s" : "N m"),
+         .override_with = "<param name=\"min\"> and <param name=\"max\"> of the <command_interface>"});
+  }
 }
 
 namespace {
@@ -69,58 +96,83 @@ int vertical_samples(const XMLElement& sensor) {
 
 }  // namespace
 
-/// Returns a number of an element, of its attribute or child; none if it has neither. Numbers may be infinite.
-std::optional<double> SourceReader::sensor_number(const XMLElement& element, const char* name,
-                                                  const std::string& link) const {
-  const XMLElement* child = element.FirstChildElement(name);
-  const bool is_attribute = element.Attribute(name) != nullptr;
-  if (!is_attribute && child == nullptr) return std::nullopt;
-  const std::string text = is_attribute ? trimmed(element.Attribute(name)) : trimmed(child->GetText());
+/// Returns the number in a text of an element of a sensor or an interface, which may be infinite.
+double SourceReader::number_of(const XMLElement& element, const char* raw, const std::string& subject,
+                               const std::string& name, const char* owner) const {
+  const std::string text = trimmed(raw);
   const char* const end = text.data() + text.size();
   double value = 0.0;
   const auto [stop, error] = std::from_chars(text.data() + (text.starts_with('+') ? 1 : 0), end, value);
   if (error != std::errc() || stop != end || std::isnan(value)) {
-    fail(is_attribute ? element : *child, link,
-         fmt::format("{} = \"{}\" of its sensor: must be a number", name, io::on_one_line(text)));
+    fail(element, subject, fmt::format("{} = \"{}\" of its {}: must be a number", name, io::on_one_line(text), owner));
   }
   return value;
 }
 
-/// Reads field of view and range of a lidar. A field of view that is not symmetric turns the frame to its middle.
-void SourceReader::read_scan_field(const XMLElement& sensor, SourceSensor& found) {
-  double middle_rad = 0.0;
+/// Returns a number of an element, of its attribute or child; none if it has neither.
+std::optional<double> SourceReader::sensor_number(const XMLElement& element, const char* name,
+                                                  const std::string& link) const {
+  if (const char* text = element.Attribute(name)) return number_of(element, text, link, name, "sensor");
+  const XMLElement* child = element.FirstChildElement(name);
+  if (child == nullptr) return std::nullopt;
+  return number_of(*child, child->GetText(), link, name, "sensor");
+}
+
+/// Reads the numbers of a lidar. A field of view that is not symmetric turns the frame to its middle.
+void SourceReader::read_scan(const XMLElement& sensor, SourceSensor& found) {
+  if (const auto rate_hz = sensor_number(sensor, "update_rate", found.link); rate_hz && *rate_hz > 0.0)
+    found.stated["rate_hz"] = *rate_hz;
   for_each_below(sensor, [&](const XMLElement& element) {
     const std::string tag = element.Name();
-    if (tag == "horizontal") {
-      const std::optional<double> min = sensor_number(element, "min_angle", found.link),
-                                  max = sensor_number(element, "max_angle", found.link);
-      if (!min || !max) return;
-      if (!(*max > *min)) {
-        robot_.assumptions.push_back(
-            {.subject = found.link,
-             .text = fmt::format("the field of view of its lidar selects no preset: max_angle = {} is not above "
-                                 "min_angle = {} (line {})",
-                                 *max, *min, element.GetLineNum()),
-             .override_with = "<min_angle> and <max_angle> of the sensor"});
-        return;
-      }
-      found.fov_deg = kDegPerRad * (*max - *min);
-      middle_rad = 0.5 * (*min + *max);
-    } else if (tag == "range") {
-      const std::optional<double> max = sensor_number(element, "max", found.link);
-      if (!max) return;
-      found.range_max_m = *max;
-      if (*max > 0.0) return;
-      robot_.assumptions.push_back({.subject = found.link,
-                                    .text = fmt::format("the range of its lidar selects no preset: max = {} is not "
-                                                        "positive (line {})",
-                                                        *max, element.GetLineNum()),
-                                    .override_with = "<range> of the sensor"});
-    }
+    if (tag == "horizontal") read_field_of_view(element, found);
+    else if (tag == "vertical" && found.frame == "lidar3d") read_rings(element, found);
+    else if (tag == "range") read_range(element, found);
   });
-  constexpr double kSymmetric_rad = 0.02;
-  if (std::abs(middle_rad) > kSymmetric_rad && found.fov_deg < 359.0)
+}
+
+void SourceReader::read_field_of_view(const XMLElement& horizontal, SourceSensor& found) {
+  constexpr double kSymmetric_rad = 0.02, kFull_deg = 359.0;
+  if (const auto samples = sensor_number(horizontal, "samples", found.link)) found.stated["beams"] = *samples;
+  const std::optional<double> min = sensor_number(horizontal, "min_angle", found.link),
+                              max = sensor_number(horizontal, "max_angle", found.link);
+  if (!min || !max) return;
+  if (!(*max > *min)) {
+    robot_.assumptions.push_back(
+        {.subject = found.link,
+         .text = fmt::format("the field of view of its lidar selects no preset: max_angle = {} is not above "
+                             "min_angle = {} ({})",
+                             *max, *min, robot_.short_location(horizontal.GetLineNum())),
+         .override_with = "<min_angle> and <max_angle> of the sensor"});
+    return;
+  }
+  const double fov_deg = std::min(360.0, kDegPerRad * (*max - *min)), middle_rad = 0.5 * (*min + *max);
+  found.stated["fov_deg"] = fov_deg;
+  if (std::abs(middle_rad) > kSymmetric_rad && fov_deg < kFull_deg)
     found.T_link_sensor = found.T_link_sensor * Pose3{Eigen::Vector3d::Zero(), quaternion_from_yaw(middle_rad)};
+}
+
+void SourceReader::read_rings(const XMLElement& vertical, SourceSensor& found) const {
+  if (const auto samples = sensor_number(vertical, "samples", found.link)) found.stated["rings"] = *samples;
+  const std::optional<double> min = sensor_number(vertical, "min_angle", found.link),
+                              max = sensor_number(vertical, "max_angle", found.link);
+  if (!min || !max || !(*max > *min)) return;
+  found.stated["elevation_min_deg"] = kDegPerRad * *min;
+  found.stated["elevation_max_deg"] = kDegPerRad * *max;
+}
+
+void SourceReader::read_range(const XMLElement& range, SourceSensor& found) {
+  if (const auto min = sensor_number(range, "min", found.link); min && *min > 0.0) found.stated["range_min_m"] = *min;
+  const std::optional<double> max = sensor_number(range, "max", found.link);
+  if (!max) return;
+  if (*max > 0.0) {
+    found.stated["range_max_m"] = *max;
+    return;
+  }
+  robot_.assumptions.push_back({.subject = found.link,
+                                .text = fmt::format("the range of its lidar selects no preset: max = {} is not "
+                                                    "positive ({})",
+                                                    *max, robot_.short_location(range.GetLineNum())),
+                                .override_with = "<range> of the sensor"});
 }
 
 void SourceReader::read_gazebo_sensor(const XMLElement& sensor, const std::string& link) {
@@ -145,7 +197,7 @@ void SourceReader::read_gazebo_sensor(const XMLElement& sensor, const std::strin
       found.T_link_sensor = {{values[0], values[1], values[2]}, quaternion_from_rpy(values[3], values[4], values[5])};
     }
   }
-  if (found.frame.starts_with("lidar")) read_scan_field(sensor, found);
+  if (found.frame.starts_with("lidar")) read_scan(sensor, found);
   robot_.sensors.push_back(found);
 }
 
@@ -177,10 +229,12 @@ void SourceReader::read_sensors(const XMLElement& root) {
       report_unknown_link(attribute_text(*parent, "link"), parent->GetLineNum(), "<parent link> of the sensor");
       continue;
     }
-    robot_.sensors.push_back({.frame = vertical_samples(*sensor) > 1 ? "lidar3d" : "lidar",
-                              .link = attribute_text(*parent, "link"),
-                              .T_link_sensor = origin(*sensor, attribute_text(*sensor, "name")),
-                              .line = sensor->GetLineNum()});
+    SourceSensor found{.frame = vertical_samples(*sensor) > 1 ? "lidar3d" : "lidar",
+                       .link = attribute_text(*parent, "link"),
+                       .T_link_sensor = origin(*sensor, attribute_text(*sensor, "name")),
+                       .line = sensor->GetLineNum()};
+    read_scan(*sensor, found);
+    robot_.sensors.push_back(found);
   }
 }
 

@@ -144,11 +144,63 @@ TEST(ImportSensors, ASecondLidarBecomesLidarRearWithThePresetOfItsNumbersAndAThi
                     HasSubstr("further sensors of this type are left out: top")));
 }
 
-TEST(ImportSensors, ALidarOfNoKnownNumbersKeepsTheDefaultPresetWithARow) {
+TEST(ImportSensors, ALidarOfNoPresetHasTheNumbersOfTheFileOverTheNearestPresetWithARow) {
   Import import(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 1.0, 8.0)));
   import.load();
-  EXPECT_THAT(import.robot.settings, AllOf(HasSubstr("  lidar: {enabled: true}\n"), Not(HasSubstr("lidar_rear"))));
-  EXPECT_THAT(import.assumptions(), HasSubstr("no preset has its field of view of 115 degrees and its range of 8 m"));
+  EXPECT_THAT(
+      import.robot.settings,
+      AllOf(
+          HasSubstr("  lidar: {enabled: true, preset: tim571, beams: 720, fov_deg: 114.6, range_max_m: 8, range_min_m: "
+                    "0.1}\n"),
+          Not(HasSubstr("lidar_rear"))));
+  EXPECT_THAT(import.assumptions(),
+              HasSubstr("| lidar | is simulated as tim571 (270 degrees, 25 m) with beams: 720, fov_deg: 114.6, "
+                        "range_max_m: 8, range_min_m: 0.1 of the file: no preset has its field of view of 115 degrees "
+                        "and its range of 8 "
+                        "m | sensors.lidar in imported.yaml |"));
+}
+
+TEST(ImportSensors, RateRingsAndMinimumRangeOfA3dLidarAreThoseOfTheFileWithinTheLimitsOfTheKeys) {
+  Import import(robot(
+      chassis() + two_wheels() + caster() + joint("top_joint", "fixed", "base_link", "top", "0 0 0.5") +
+      link("top", inertial(0.2)) +
+      R"(<gazebo reference="top"><sensor type="gpu_lidar" name="x"><update_rate>500</update_rate><lidar><scan><horizontal>)"
+      R"(<samples>1024</samples><min_angle>-3.1416</min_angle><max_angle>3.1416</max_angle></horizontal><vertical>)"
+      R"(<samples>32</samples><min_angle>-0.4363</min_angle><max_angle>0.2618</max_angle></vertical></scan><range>)"
+      R"(<min>0.9</min><max>200</max></range></lidar></sensor></gazebo>)"));
+  import.load();
+  EXPECT_THAT(import.robot.settings,
+              HasSubstr("  lidar3d: {enabled: true, preset: vlp16, beams: 1024, elevation_min_deg: -25, range_max_m: "
+                        "200, range_min_m: 0.9, rings: 32}\n"));
+  EXPECT_THAT(import.assumptions(), HasSubstr("; outside of the limits of the key: rate_hz: 500 |"));
+}
+
+TEST(ImportSensors, ALidarByOptionHasARowWithItsPresetAndTheNumbersOfASensorOnItsLink) {
+  Import plain(robot(chassis() + two_wheels() + caster() + part("laser", inertial(0.2))));
+  plain.options.frames["lidar"] = "laser";
+  plain.load();
+  EXPECT_THAT(plain.robot.settings, HasSubstr("  lidar: {enabled: true}\n"));
+  EXPECT_THAT(plain.assumptions(),
+              HasSubstr("| lidar | is simulated as rplidar_s2 (360 degrees, 30 m): the file states "
+                        "neither its field of view nor its range | sensors.lidar in imported.yaml "
+                        "|"));
+  Import rear(robot(chassis() + two_wheels() + caster() + lidar_on("bow", "0.2 0 0.3", "0", 2.356, 30.0) +
+                    lidar_on("stern", "-0.2 0 0.3", "0", 2.356, 25.0)));
+  rear.options.frames["lidar_rear"] = "bow";
+  const RobotDescription& robot = rear.load();
+  EXPECT_NEAR(robot.T_body("lidar").position.x(), -0.2, 1e-9);
+  EXPECT_NEAR(robot.T_body("lidar_rear").position.x(), 0.2, 1e-9);
+  EXPECT_THAT(rear.robot.settings, AllOf(HasSubstr("  lidar: {enabled: true, preset: tim571}\n"),
+                                         HasSubstr("  lidar_rear: {enabled: true, preset: utm30lx}\n")));
+}
+
+TEST(ImportSensors, ARaySensorOfUrdfStatesItsFieldOfViewAsAttributes) {
+  Import import(robot(chassis() + two_wheels() + caster() + part("laser", inertial(0.2)) +
+                      R"(<sensor name="y" update_rate="20"><parent link="laser"/><ray><horizontal samples="100" )"
+                      R"(min_angle="-1.0" max_angle="1.0"/></ray></sensor>)"));
+  import.load();
+  EXPECT_THAT(import.robot.settings, HasSubstr("beams: 100, fov_deg: 114.6, rate_hz: 20}\n"));
+  EXPECT_THAT(import.assumptions(), HasSubstr("of the file: the file states only its field of view of 115 degrees |"));
 }
 
 /// Robot with a lidar whose numbers are these texts.
