@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -140,11 +141,18 @@ Normalizer::Foot Normalizer::find_foot(const FoundLeg& leg) {
 Motor Normalizer::motor_of_leg(const SourceJoint& joint, double mass_kg, double leg_m) {
   // Ratios of the motors of walking robots of 12 to 50 kg to weight and length of the leg.
   constexpr double kTorqueRatio = 0.42, kSpeed_radps = 20.0;
+  constexpr double kPlaceholderTorque = 20.0;  // to that of these motors
   Motor motor{.effort_nm = joint.effort.value_or(0.0), .velocity_radps = joint.velocity.value_or(0.0)};
+  const double usual_nm = kTorqueRatio * mass_kg * kGravity_mps2 * leg_m;
   if (motor.effort_nm <= 0.0) {
-    motor.effort_nm = kTorqueRatio * mass_kg * kGravity_mps2 * leg_m;
+    motor.effort_nm = usual_nm;
     assume(joint.name,
            fmt::format("torque limit {:.3g} N m: {} of weight times length of the leg", motor.effort_nm, kTorqueRatio),
+           "<limit effort> of the joint");
+  } else if (motor.effort_nm > kPlaceholderTorque * usual_nm) {
+    assume(joint.name,
+           fmt::format("torque limit {:.4g} N m of the file is kept: {:.0f} times that of walking robots of its size",
+                       motor.effort_nm, motor.effort_nm / usual_nm),
            "<limit effort> of the joint");
   }
   if (motor.velocity_radps <= 0.0) {
@@ -156,12 +164,12 @@ Motor Normalizer::motor_of_leg(const SourceJoint& joint, double mass_kg, double 
 
 /// Adds three links for each leg, in the frames of the file, and its foot.
 void Normalizer::add_legs() {
-  double mass_kg = total_mass_kg();
-  for (const FoundLeg& leg : legs_) {
-    for (const SourceJoint* joint : leg.joints) {
-      for (const SourceLink* link : moving_group(*joint)) mass_kg += link->inertial ? link->inertial->mass_kg : 0.0;
-    }
-  }
+  struct LegJoint {
+    const SourceJoint* joint = nullptr;
+    std::size_t link = 0;  // index in the result
+    double leg_m = 0.0;
+  };
+  std::vector<LegJoint> leg_joints;
   for (const FoundLeg& leg : legs_) {
     const Foot foot = find_foot(leg);
     const double leg_m =
@@ -179,8 +187,8 @@ void Normalizer::add_legs() {
                                      .T_parent_link = T_base_parent.inverse() * T_base_link,
                                      .is_fixed = false,
                                      .axis = joint.axis,
-                                     .range = range_of_leg(joint),
-                                     .motor = motor_of_leg(joint, mass_kg, leg_m)};
+                                     .range = range_of_leg(joint)};
+      leg_joints.push_back({&joint, result_.links.size(), leg_m});
       const std::vector<const SourceLink*> links = moving_group(joint);
       std::vector<Shape> shapes;
       for (const SourceLink* link : links) {
@@ -208,6 +216,9 @@ void Normalizer::add_legs() {
     tip.collisions.push_back({.shape = {.type = ShapeType::kSphere, .radius_m = foot.radius_m}});
     result_.links.push_back(std::move(tip));
   }
+  const double mass_kg = total_mass_kg();  // with the masses that are assumed for links of the legs
+  for (const LegJoint& each : leg_joints)
+    result_.links[each.link].joint->motor = motor_of_leg(*each.joint, mass_kg, each.leg_m);
   assume("gait",
          fmt::format("walks with the gait of models/quadruped, scaled to {:.3g} kg and legs of {:.3g} m", mass_kg,
                      result_.leg_m),

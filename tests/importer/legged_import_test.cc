@@ -227,6 +227,24 @@ TEST(LeggedImport, JointsWithoutLimitsGetTorqueSpeedAndAHalfTurnAndAreReported) 
   EXPECT_THAT(import.assumptions(), HasSubstr("of weight times length of the leg"));
 }
 
+TEST(LeggedImport, LinksOfLegsWithoutInertiaCountWithTheirAssumedMass) {
+  const std::regex inertia_of_thighs("(<link name=\"[a-z]+_1\">)<inertial>.*?</inertial>");
+  Import import(std::regex_replace(vendor_robot().text(), inertia_of_thighs, "$1"));
+  const double mass_kg = import.load().mass_kg;
+  EXPECT_THAT(import.assumptions(), HasSubstr("kg is assumed, 500 kg/m3 in its shape"));
+  EXPECT_THAT(import.assumptions(), HasSubstr(fmt::format("scaled to {:.3g} kg", mass_kg)));
+}
+
+TEST(LeggedImport, ATorqueLimitThatIsAPlaceholderIsARow) {
+  Import plain(vendor_robot().text());
+  plain.load();
+  EXPECT_THAT(plain.assumptions(), Not(HasSubstr("is kept")));
+  Import import(std::regex_replace(vendor_robot().text(), std::regex("effort=\"[0-9.]+\""), "effort=\"1000\""));
+  import.load();
+  // 0.42 * 20 kg * 9.81 m/s2 * 0.45 m = 37 N m.
+  EXPECT_THAT(import.assumptions(), HasSubstr("torque limit 1000 N m of the file is kept: 27 times that of walking"));
+}
+
 TEST(LeggedImport, LinksNamedFootHeadOrWheelDecideNothing) {
   UrdfQuadruped robot;
   robot.legs = {"left_wheel", "imu_foot", "head", "arm"};
