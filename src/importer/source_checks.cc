@@ -80,13 +80,24 @@ bool SourceReader::has_rigid_collision(const std::string& link) const {
   return false;
 }
 
-/// Leaves out visuals without their mesh beside a collision shape. Without one, the visual is the contact shape.
+/// Draws links without any of their meshes as their collision shapes. Beside a collision shape of another link, a
+/// visual without its mesh is left out. Without one, the visual is the contact shape.
 void SourceReader::check_missing_visuals() {
+  std::set<std::string> drawn_as_collision;
   for (const MissingVisual& missing : missing_visuals_) {
     if (!has_rigid_collision(missing.link)) robot_.fail(missing.line, missing.link, missing.message);
-    robot_.assumptions.push_back({.subject = missing.link,
-                                  .text = fmt::format("is drawn without {}: mesh file not found", missing.uri),
-                                  .override_with = "the file, or --package NAME=FOLDER"});
+    const auto link = std::ranges::find(robot_.links, missing.link, &SourceLink::name);
+    if (link->visuals.empty() && !link->collisions.empty()) drawn_as_collision.insert(missing.link);
+    robot_.assumptions.push_back(
+        {.subject = missing.link,
+         .text = fmt::format("{} {}: mesh file not found",
+                             drawn_as_collision.contains(missing.link) ? "is drawn as its collision shape instead of"
+                                                                       : "is drawn without",
+                             missing.uri),
+         .override_with = "the file, or --package NAME=FOLDER"});
+  }
+  for (SourceLink& link : robot_.links) {
+    if (drawn_as_collision.contains(link.name)) link.visuals = link.collisions;
   }
 }
 

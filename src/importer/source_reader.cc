@@ -332,6 +332,8 @@ SourceRobot SourceReader::read() {
   const XMLElement* root = document_.FirstChildElement("robot");
   if (root == nullptr) {
     const XMLElement* other = document_.RootElement();
+    const std::string found = other != nullptr ? other->Name() : "";
+    const std::string kind = found == "mujoco" ? " of MuJoCo" : found == "sdf" ? " in SDF" : "";
     throw input_error(robot_.file, other != nullptr ? other->GetLineNum() : 0,
                       "<robot> is missing: must be a URDF file");
   }

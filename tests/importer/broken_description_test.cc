@@ -54,7 +54,7 @@ TEST(BrokenDescription, AFileThatIsNoDescription) {
   EXPECT_EQ(complaint(std::string("\xff\xfe<\0r\0", 6)), zero);
   EXPECT_THAT(complaint(with("<link")), MatchesRegex("v.urdf:[0-9]+: not an XML file.*"));
   EXPECT_EQ(complaint("<robot>\n<link name=\"a\"/>"), "v.urdf:1: not an XML file: incomplete or not well-formed");
-  EXPECT_THAT(complaint("<sdf/>"), MatchesRegex("v.urdf:1: <robot> is missing.*"));
+  EXPECT_THAT(complaint("<html/>"), MatchesRegex("v.urdf:1: <robot> is missing.*"));
   EXPECT_THAT(complaint(robot("")), MatchesRegex("v.urdf:2: <robot>: has no links"));
 }
 

@@ -86,11 +86,21 @@ TEST(PublicDescription, OfSeveralMeshesOfOneNameNoneIsChosen) {
                                               "there, or give the folder of its package with --package NAME=FOLDER"));
 }
 
-TEST(PublicDescription, AMissingMeshOfLooksIsNotDrawn) {
+TEST(PublicDescription, ALinkWhoseMeshIsMissingIsDrawnAsItsCollisionShapeAndOneWithoutItIsNotDrawn) {
   const std::string missing = shape("visual", R"(<mesh filename="nowhere/logo.dae"/>)");
   Import import(with(part("x", missing + shape("collision", box(0.1, 0.1, 0.1))) + part("logo", missing)));
   import.load();
-  EXPECT_THAT(import.assumptions(), HasSubstr("| x, logo | is drawn without nowhere/logo.dae: mesh file not found |"));
+  EXPECT_THAT(
+      import.assumptions(),
+      AllOf(HasSubstr("| x | is drawn as its collision shape instead of nowhere/logo.dae: mesh file not found |"),
+            HasSubstr("| y, logo | is drawn without nowhere/logo.dae: mesh file not found |")));
+  const auto num_of = [&import](const std::string& size) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = import.robot.urdf.find(size, at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  EXPECT_EQ(num_of("size=\"0.1 0.11 0.12\""), 2U) << "visual and collision";
+  EXPECT_EQ(num_of("size=\"0.1 0.1 0.13\""), 1U) << "another visual is drawn";
   // Without a collision shape, the visual of a moving part is its contact shape.
   Import wheel(robot(chassis() + two_wheels() + caster() +
                      joint("j", "continuous", "base_link", "w", "0.2 0 0.3", axis("0 1 0")) + link("w", missing)));
@@ -123,6 +133,13 @@ TEST(PublicDescription, AUrdfFileWithExpressionsOfXacroIsExpandedOrNamesWhatIsMi
     EXPECT_THAT(message,
                 HasSubstr("vendor.urdf: xacro is not available to expand its $(...), ${...} and <xacro:...>: "));
   }
+}
+
+TEST(PublicDescription, AModelOfAnotherFormatIsRefusedByItsName) {
+  Import mujoco("<mujoco model=\"x\"/>"), sdf("<sdf version=\"1.9\"/>"), other("<html/>");
+  EXPECT_EQ(complaint(mujoco), "vendor.urdf:1: is a model of MuJoCo: robots are read from URDF and xacro only");
+  EXPECT_EQ(complaint(sdf), "vendor.urdf:1: is a model in SDF: robots are read from URDF and xacro only");
+  EXPECT_EQ(complaint(other), "vendor.urdf:1: <robot> is missing: must be a URDF file");
 }
 
 }  // namespace
