@@ -182,10 +182,16 @@ CheckRobot load_check_robot(const std::string& name, const std::vector<std::stri
   const bool has_legs = robot.kind == DriveKind::kLegs;
   const SkidTurn turn = has_legs ? SkidTurn{} : skid_turn(robot.description);
   robot.turn_center_x_m = turn.turn_center_x_m;
-  if (robot.kind == DriveKind::kDifferentialWheels && scenario.as_built.enabled) {
+  const bool turns_by_sides = robot.kind == DriveKind::kDifferentialWheels || robot.kind == DriveKind::kMecanumWheels;
+  if (turns_by_sides && scenario.as_built.enabled) {
     const double gauge_m = differential_geometry(robot.description).gauge_m * turn.gauge_ratio;
-    robot.max_heading_drift_rad_per_m =
-        std::max(robot.max_heading_drift_rad_per_m, 2.0 * scenario.as_built.wheels.radius_scale / gauge_m);
+    const double drift_rad_per_m = 2.0 * scenario.as_built.wheels.radius_scale / gauge_m;
+    robot.max_heading_drift_rad_per_m = std::max(robot.max_heading_drift_rad_per_m, drift_rad_per_m);
+    for (const WheelGeometry& wheel : robot.description.wheels) {
+      // Speed of the wheel relative to that of the robot to the side.
+      const double ratio = wheel.roller_axis_rad ? std::abs(std::tan(*wheel.roller_axis_rad)) : 0.0;
+      robot.max_sideways_drift_rad_per_m = std::max(robot.max_sideways_drift_rad_per_m, ratio * drift_rad_per_m);
+    }
     // The radii are uniform within the tolerance.
     const double radius_std = scenario.as_built.wheels.radius_scale / std::numbers::sqrt3;
     robot.yaw_tolerance += 3.0 *

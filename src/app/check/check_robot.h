@@ -54,8 +54,11 @@ struct CheckRobot {
   /// deviations of the as-built bias. Only robots with legs do so.
   double max_gyro_bias_radps = 0.0;
   /// Bound of the heading error per distance: 1 degree per meter, or more if the wheels of both sides of a differential
-  /// drive have as-built radii at opposite ends of their tolerance.
+  /// or mecanum drive have as-built radii at opposite ends of their tolerance.
   double max_heading_drift_rad_per_m = kDegree;
+  /// Bound of the heading error per distance to the side: 1 degree per meter, or more if the wheels of both axles of a
+  /// mecanum drive have as-built radii at opposite ends of their tolerance.
+  double max_sideways_drift_rad_per_m = kDegree;
   /// Bound of the error of the yaw rate relative to the commanded one: 15 %. For a rigid chassis on more than four
   /// wheels, three standard deviations of the gauge ratio by the as-built radii are added.
   double yaw_tolerance = 0.15;

@@ -167,6 +167,7 @@ std::vector<Figure> measure_straight(const CheckRobot& robot, const Maneuver&, c
 std::vector<Figure> measure_sideways(const CheckRobot& robot, const Maneuver&, const DriveRecord& record) {
   const DriveSample& end = record.samples.back();
   const double commanded_m = end.T_start_commanded.y;
+  const double heading_drift_rad = robot.max_sideways_drift_rad_per_m * std::abs(commanded_m);
   std::vector<Figure> figures = {
       {.name = "distance_m", .value = end.T_start_center.y, .is_key = true},
       {.name = "distance_ratio",
@@ -175,9 +176,10 @@ std::vector<Figure> measure_sideways(const CheckRobot& robot, const Maneuver&, c
        .max = 1.1,
        .limit_reason = "navigation plans with the commanded speed, ±10 %",
        .is_key = true},
-      symmetric("forward_drift_m", end.T_start_center.x, 0.1 * std::abs(commanded_m), "a tenth of the distance"),
-      symmetric("heading_drift_deg", to_deg(end.yaw_rad), std::abs(commanded_m), "1 degree per meter by as-built radii",
-                true)};
+      symmetric("forward_drift_m", end.T_start_center.x, std::max(0.1, 0.5 * heading_drift_rad) * std::abs(commanded_m),
+                "a tenth of the distance, or half of it times the limit of the heading"),
+      symmetric("heading_drift_deg", to_deg(end.yaw_rad), to_deg(heading_drift_rad),
+                "1 degree per meter, or as-built radii of both axles at opposite ends of their tolerance", true)};
   add_motor_figures(record, figures);
   limit_mean_torque(figures);
   figures.push_back(plane_tilt_figure(robot, record));

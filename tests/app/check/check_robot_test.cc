@@ -62,6 +62,22 @@ TEST(CheckRobot, TheLimitOfTheHeadingDriftIs1DegreePerMeterOrThatOfOppositeRadii
   EXPECT_NEAR(to_deg(load("tracked").max_heading_drift_rad_per_m), 1.0, 1e-9);
 }
 
+// Rollers at 30 degrees to the axle: the wheels turn faster by 1 / tan(30) when the robot drives to the side.
+TEST(CheckRobot, TheLimitsOfTheHeadingDriftOfMecanumWheelsAreThoseOfOppositeRadii) {
+  const std::vector<std::string> mecanum = {"wheel_drive.type=mecanum", "wheel_drive.roller_angle_rad=0.5235987756"};
+  const auto with_radii = [&mecanum](const std::string& radius_scale) {
+    std::vector<std::string> overrides = mecanum;
+    overrides.push_back("as_built.wheels.radius_scale=" + radius_scale);
+    return load("wheeled", overrides);
+  };
+  const CheckRobot robot = with_radii("0.04");
+  const double drift = 0.08 / (differential_geometry(robot.description).gauge_m * skid_ratio(robot.description));
+  EXPECT_NEAR(robot.max_heading_drift_rad_per_m, drift, 1e-9);
+  EXPECT_NEAR(robot.max_sideways_drift_rad_per_m, std::sqrt(3.0) * drift, 1e-6);
+  EXPECT_NEAR(to_deg(with_radii("0.002").max_sideways_drift_rad_per_m), 1.0, 1e-9);
+  EXPECT_NEAR(to_deg(load("wheeled").max_sideways_drift_rad_per_m), 1.0, 1e-9);
+}
+
 /// Wheeled robot with a middle axle, in a folder of its own.
 CheckRobot six_wheels(const std::vector<std::string>& overrides) {
   const test::TemporaryFolder root;

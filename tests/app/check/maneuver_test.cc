@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "app/check/maneuver_figures.h"
+#include "core/geometry/angles.h"
 #include "tests/app/check/straight_record.h"
 
 namespace patrol::app::maneuver_test {
@@ -64,6 +65,12 @@ TEST(CheckManeuvers, MecanumWheelsAlsoDrive5MetersSidewaysAt0_6TimesTheirLateral
   record.samples.back().T_start_center.y = 4.0;
   EXPECT_THAT(failures_of(robot, sideways, record, sideways.measure(robot, sideways, record)),
               ElementsAre("distance ratio 0.800: 0.900 to 1.100"));
+  record.samples.back().T_start_center = {0.6, 5.0, 0.0};
+  record.samples.back().yaw_rad = to_rad(8.0);
+  EXPECT_THAT(failures_of(robot, sideways, record, sideways.measure(robot, sideways, record)),
+              ElementsAre(HasSubstr("forward drift"), HasSubstr("heading drift")));
+  robot.max_sideways_drift_rad_per_m = to_rad(14.0);
+  EXPECT_THAT(failures_of(robot, sideways, record, sideways.measure(robot, sideways, record)), ElementsAre());
 }
 
 TEST(CheckManeuvers, TheCommandsOfTheSquareAdd12MetersAnd360Degrees) {
