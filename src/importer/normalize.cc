@@ -341,6 +341,7 @@ NormalizedRobot Normalizer::run() {
     const double mass_kg = total_mass_kg();
     strengthen_casters(mass_kg);
     for (const Support& support : supports_) add_support(support, mass_kg);
+    report_frictions();
   }
   add_sensors();
   choose_scan_band();

@@ -314,7 +314,7 @@ void Normalizer::finish() {
       }
     }
   }
-  double fixed_x = 0.0, num_fixed = 0.0, steered_x = 0.0, num_steered = 0.0, max_angle = 0.6;
+  double fixed_x = 0.0, num_fixed = 0.0, steered_x = 0.0, num_steered = 0.0, max_angle = kSteering_rad;
   for (const FoundWheel& wheel : found_.wheels) {
     front_m = std::max(front_m, wheel.center_m.x() + wheel.radius_m);
     rear_m = std::min(rear_m, wheel.center_m.x() - wheel.radius_m);
@@ -323,8 +323,8 @@ void Normalizer::finish() {
     if (wheel.carrier_type == CarrierType::kSteering) {
       steered_x += wheel.center_m.x();
       ++num_steered;
-      if (!wheel.carrier->is_endless())
-        max_angle = std::min(std::abs(wheel.carrier->lower), std::abs(wheel.carrier->upper));
+      if (const auto limits = wheel.carrier->steering_limits())
+        max_angle = std::min(std::abs(limits->first), std::abs(limits->second));
     } else if (wheel.carrier_type == CarrierType::kNone) {
       fixed_x += wheel.center_m.x();
       ++num_fixed;

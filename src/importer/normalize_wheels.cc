@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -13,6 +14,7 @@ namespace patrol::importer {
 namespace {
 
 constexpr double kAssumedSpeedRadius_m = 0.1;  // of the smallest wheels at kAssumedSpeed_mps
+constexpr double kMaxUnreported = 1.01;        // of the speed of the motors to that of the robot
 constexpr double kPlaceholderRatio = 10.0;     // of a speed limit to the assumed one
 constexpr double kTorqueReserve = 1.5;  // loads differ, and wheels that skid sideways need the torque of friction
 
@@ -86,6 +88,29 @@ void Normalizer::reduce_losses(const SourceJoint& joint, double radius_m, double
          "<dynamics> and <limit effort velocity> of the joint");
 }
 
+/// Returns the range of a steering joint.
+JointRange Normalizer::steering_range_of(const SourceJoint& joint) {
+  const auto limits = joint.steering_limits();
+  if (!limits) {
+    assume(joint.name, fmt::format("steering angle is limited to {} rad: the joint has no limits", kSteering_rad),
+           joint.type == JointType::kContinuous ? "type revolute and <limit lower upper> of the joint"
+                                                : "<limit lower upper> of the joint");
+    return {-kSteering_rad, kSteering_rad};
+  }
+  const auto& [lower, upper] = *limits;
+  if (lower > -kMinSteering_rad || upper < kMinSteering_rad) {
+    source_.fail(joint.line, joint.name,
+                 fmt::format("steering range {:.3g} to {:.3g} rad: must reach at least {} rad to both sides", lower,
+                             upper, kMinSteering_rad));
+  }
+  if (joint.is_endless())
+    assume(
+        joint.name,
+        fmt::format("steering angle is {:.3g} to {:.3g} rad by <limit>, although its type is continuous", lower, upper),
+        "type revolute of the joint");
+  return {lower, upper};
+}
+
 /// Adds carriers and wheels. The frames of both are parallel to base_link; a wheel's origin is its center.
 void Normalizer::add_wheels() {
   double mass_kg = total_mass_kg();
@@ -128,17 +153,7 @@ void Normalizer::add_wheels() {
                                    .damping = joint.damping,
                                    .friction = joint.friction};
     if (!is_caster) {
-      JointRange range{joint.lower, joint.upper};
-      if (joint.is_endless()) {
-        range = {-0.6, 0.6};
-        assume(joint.name, "steering angle is limited to 0.6 rad: the joint has no limits",
-               "<limit lower upper> of the joint");
-      } else if (joint.lower > -kMinSteering_rad || joint.upper < kMinSteering_rad) {
-        source_.fail(joint.line, joint.name,
-                     fmt::format("steering range {:.3g} to {:.3g} rad: must reach at least {} rad to both sides",
-                                 joint.lower, joint.upper, kMinSteering_rad));
-      }
-      target.joint->range = range;
+      target.joint->range = steering_range_of(joint);
       Motor motor{joint.effort.value_or(0.0), joint.velocity.value_or(0.0)};
       if (motor.effort_nm <= 0.0) {
         motor.effort_nm = std::max(2.0, kFriction * mass_kg * kGravity_mps2 /
@@ -169,7 +184,7 @@ void Normalizer::add_wheels() {
     result_.links.push_back(std::move(target));
   }
 
-  double max_speed_mps = kAssumedSpeed_mps;
+  double max_speed_mps = std::numeric_limits<double>::infinity();
   for (const FoundWheel& wheel : found_.wheels) {
     const SourceJoint& joint = *wheel.joint;
     const bool has_carrier = wheel.carrier_type != CarrierType::kNone;
@@ -213,7 +228,32 @@ void Normalizer::add_wheels() {
     replace_heavy_inertia(wheel, tread, *target.inertial);
     result_.links.push_back(std::move(target));
   }
-  result_.max_speed_mps = max_speed_mps;
+  result_.max_speed_mps = std::min(kAssumedSpeed_mps, max_speed_mps);
+  if (max_speed_mps <= kMaxUnreported * kAssumedSpeed_mps) return;
+  assume(
+      "speed",
+      fmt::format("drives at up to {:g} m/s, although the motors reach {:.3g} m/s", kAssumedSpeed_mps, max_speed_mps),
+      fmt::format("wheel_drive.max_speed_mps and stack.navigation.local_planner.dwa.max_speed_mps in {}.yaml",
+                  result_.name));
+}
+
+/// Reports friction coefficients of Gazebo on parts that touch the ground. They are not used: many are tuned for its
+/// contact solver, as 0.01 in place of mecanum rollers.
+void Normalizer::report_frictions() {
+  const auto report = [this](const std::string& link, const std::string& simulated, const std::string& key) {
+    const auto found = source_.frictions.find(link);
+    if (found == source_.frictions.end()) return;
+    const auto& [mu1, mu2] = found->second;
+    if (mu1 == kFriction && mu2 == kFriction) return;
+    assume(link, fmt::format("friction mu1 = {:g}, mu2 = {:g} of <gazebo> is not used: {}", mu1, mu2, simulated), key);
+  };
+  for (const FoundWheel& wheel : found_.wheels) {
+    for (const SourceLink* link : moving_group(*wheel.joint))
+      report(link->name, fmt::format("{} is simulated on all wheels", kFriction),
+             fmt::format("wheel_drive.friction in {}.yaml", result_.name));
+  }
+  for (const Support& support : supports_)
+    report(support.link, "it rolls as a ball", "none: casters roll in the simulator");
 }
 
 /// Replaces the inertia of a wheel by that of its shape if it resists rolling like a mass beyond all proportion.

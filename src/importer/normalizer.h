@@ -38,6 +38,7 @@ inline double axle_angle_rad(const Eigen::Vector3d& axis) {
 inline constexpr double kFriction = 0.8;          // rubber on asphalt
 inline constexpr double kDensity_kgpm3 = 500.0;   // of a link without mass
 inline constexpr double kMinSteering_rad = 0.05;  // to each side
+inline constexpr double kSteering_rad = 0.6;      // to each side, of a joint without limits
 inline constexpr double kParallel_rad = 0.0447;   // 2.6 degrees, as io/urdf.cc
 inline constexpr double kAssumedSpeed_mps = 1.5;
 inline constexpr double kSupportMassRatio = 0.03;  // of balls in place of fixed supports, to the robot
@@ -162,6 +163,7 @@ class Normalizer {
   std::optional<std::string> frame_by_option(const SourceSensor& sensor) const;
   void choose_lidar(const std::string& frame, const LidarNumbers& stated);
   void choose_scan_band();
+  void report_frictions();
   void choose_keep_out_margin(double width_m);
   void check_densities();
   void finish();
@@ -177,6 +179,7 @@ class Normalizer {
   double total_mass_kg() const;
   void reduce_losses(const SourceJoint& joint, double radius_m, double traction_nm, NormalizedJoint& driven);
   void replace_heavy_inertia(const FoundWheel& wheel, const Shape& tread, Inertial& inertial);
+  JointRange steering_range_of(const SourceJoint& joint);
   double speed_of(const FoundWheel& wheel, const Motor& motor);
   Motor motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg);
   NormalizedLink& base() { return result_.links.front(); }

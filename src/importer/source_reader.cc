@@ -335,7 +335,8 @@ SourceRobot SourceReader::read() {
     const std::string found = other != nullptr ? other->Name() : "";
     const std::string kind = found == "mujoco" ? " of MuJoCo" : found == "sdf" ? " in SDF" : "";
     throw input_error(robot_.file, other != nullptr ? other->GetLineNum() : 0,
-                      "<robot> is missing: must be a URDF file");
+                      kind.empty() ? "<robot> is missing: must be a URDF file"
+                                   : fmt::format("is a model{}: robots are read from URDF and xacro only", kind));
   }
   robot_.name = attribute_text(*root, "name");
   read_materials(*root);

@@ -70,6 +70,7 @@ class SourceReader {
   void read_motors(const tinyxml2::XMLElement& root);
   void read_command_limits(const tinyxml2::XMLElement& control, const std::string& name);
   void read_plugin(const tinyxml2::XMLElement& plugin);
+  void read_friction(const tinyxml2::XMLElement& gazebo, const std::string& link);
   void read_sensors(const tinyxml2::XMLElement& root);
   void read_gazebo_sensor(const tinyxml2::XMLElement& sensor, const std::string& link);
   double number_of(const tinyxml2::XMLElement& element, const char* raw, const std::string& subject,

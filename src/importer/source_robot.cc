@@ -1,5 +1,6 @@
 #include "importer/source_robot.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <numbers>
@@ -16,6 +17,14 @@ namespace patrol::importer {
 bool SourceJoint::is_endless() const {
   constexpr double kTwoTurns_rad = 4.0 * std::numbers::pi - 1e-3;
   return type == JointType::kContinuous || (type == JointType::kRevolute && upper - lower >= kTwoTurns_rad);
+}
+
+std::optional<std::pair<double, double>> SourceJoint::steering_limits() const {
+  constexpr double kQuarterTurn_rad = 0.5 * std::numbers::pi + 1e-3;
+  if (!is_endless()) return std::pair{lower, upper};
+  const bool is_steering =
+      type == JointType::kContinuous && lower < 0.0 && upper > 0.0 && std::max(-lower, upper) <= kQuarterTurn_rad;
+  return is_steering ? std::optional(std::pair{lower, upper}) : std::nullopt;
 }
 
 /// Adds new links and joints to the index. Of equal names, the first one counts.

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -80,6 +81,9 @@ struct SourceJoint {
 
   /// Whether the joint turns without end: continuous, or at least two full turns.
   bool is_endless() const;
+  /// Returns lower and upper limit of a steering joint; none if it turns without end. Those of a continuous joint
+  /// count, although its type has none, if they are at most a quarter turn to either side.
+  std::optional<std::pair<double, double>> steering_limits() const;
 };
 
 /// Numbers that the description states of a lidar, by the key of LidarSettings (core/sensors/lidar.h).
@@ -103,7 +107,8 @@ struct SourceRobot {
   std::vector<SourceJoint> joints;
   std::set<std::string> motors;  ///< joints named by a transmission, a command interface or a drive plugin
   std::vector<SourceSensor> sensors;
-  std::vector<Assumption> assumptions;  ///< made by the reader
+  std::map<std::string, std::pair<double, double>> frictions = {};  ///< link to mu1 and mu2 of Gazebo
+  std::vector<Assumption> assumptions;                              ///< made by the reader
 
   /// Positions of links and joints by name, extended by the functions below. Names of added ones must not change.
   struct Index {

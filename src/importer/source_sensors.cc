@@ -203,9 +203,25 @@ void SourceReader::read_gazebo_sensor(const XMLElement& sensor, const std::strin
 
 /// Reports a sensor of a link that the file does not have.
 void SourceReader::report_unknown_link(const std::string& link, int line, const std::string& override_with) {
-  robot_.assumptions.push_back({.subject = link,
-                                .text = fmt::format("unknown link: its sensor in line {} is left out", line),
-                                .override_with = override_with});
+  robot_.assumptions.push_back(
+      {.subject = link,
+       .text = fmt::format("unknown link: its sensor in {} is left out", robot_.short_location(line)),
+       .override_with = override_with});
+}
+
+/// Reads the friction coefficients of a link; mu2 is mu1 if only this is given. They only make a row: texts that are no
+/// numbers are left out.
+void SourceReader::read_friction(const XMLElement& gazebo, const std::string& link) {
+  const auto value_of = [&](const char* name) -> std::optional<double> {
+    const XMLElement* element = gazebo.FirstChildElement(name);
+    if (element == nullptr) return std::nullopt;
+    const char* attribute = element->Attribute("value");
+    double value = 0.0;
+    const char* text = attribute != nullptr ? attribute : element->GetText();
+    return text != nullptr && tinyxml2::XMLUtil::ToDouble(text, &value) ? std::optional(value) : std::nullopt;
+  };
+  const std::optional<double> mu1 = value_of("mu1"), mu2 = value_of("mu2");
+  if (mu1 || mu2) robot_.frictions[link] = {mu1 ? *mu1 : *mu2, mu2 ? *mu2 : *mu1};
 }
 
 void SourceReader::read_sensors(const XMLElement& root) {
@@ -217,6 +233,7 @@ void SourceReader::read_sensors(const XMLElement& root) {
         report_unknown_link(link, gazebo->GetLineNum(), "attribute reference of <gazebo>");
       continue;
     }
+    read_friction(*gazebo, link);
     for (const XMLElement* sensor = gazebo->FirstChildElement("sensor"); sensor != nullptr;
          sensor = sensor->NextSiblingElement("sensor"))
       read_gazebo_sensor(*sensor, link);

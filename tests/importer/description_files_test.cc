@@ -88,7 +88,9 @@ TEST(PublicDescription, OfSeveralMeshesOfOneNameNoneIsChosen) {
 
 TEST(PublicDescription, ALinkWhoseMeshIsMissingIsDrawnAsItsCollisionShapeAndOneWithoutItIsNotDrawn) {
   const std::string missing = shape("visual", R"(<mesh filename="nowhere/logo.dae"/>)");
-  Import import(with(part("x", missing + shape("collision", box(0.1, 0.1, 0.1))) + part("logo", missing)));
+  Import import(with(part("x", missing + shape("collision", box(0.1, 0.11, 0.12))) +
+                     part("y", missing + shape("visual", sphere(0.07)) + shape("collision", box(0.1, 0.1, 0.13))) +
+                     part("logo", missing)));
   import.load();
   EXPECT_THAT(
       import.assumptions(),
