@@ -43,10 +43,25 @@ std::unique_ptr<Locomotion> make_locomotion(const SimulatorSettings& settings, c
                                       physics, robot.wheels());
 }
 
+AssembledModel assemble_at(const Pose2& T_world_start, const SimulatorSettings& settings, const AsBuiltRobot& robot) {
+  return assemble_model(settings.world_xml, settings.robot_urdf, robot.nominal(), T_world_start,
+                        settings.static_obstacles, Textures::kNone);
+}
+
+/// Assembles the model with the robot at its start with the placement error. A message about a start that is invalid
+/// without this error, too, has the start of the settings.
+AssembledModel assemble_at_start(const SimulatorSettings& settings, const AsBuiltRobot& robot) {
+  try {
+    return assemble_at(robot.start(settings.T_world_start), settings, robot);
+  } catch (const InputError& error) {
+    assemble_at(settings.T_world_start, settings, robot);
+    throw InputError(fmt::format("{}: with the error of as_built.placement; ({:.2f}, {:.2f}) without it is valid",
+                                 error.what(), settings.T_world_start.x, settings.T_world_start.y));
+  }
+}
+
 AssembledModel assemble(const SimulatorSettings& settings, const AsBuiltRobot& robot) {
-  AssembledModel model =
-      assemble_model(settings.world_xml, settings.robot_urdf, robot.nominal(), robot.start(settings.T_world_start),
-                     settings.static_obstacles, Textures::kNone);
+  AssembledModel model = assemble_at_start(settings, robot);
   apply_as_built(robot, *model.physics);
   deform_lining(settings.lining_deformations, settings.lining, *model.view);
   return model;

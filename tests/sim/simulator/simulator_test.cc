@@ -75,6 +75,27 @@ TEST(Simulator, ARobotOnLegsSendsNoTicks) {
   EXPECT_EQ(count<TrackTicks>(simulator.run(0.0, 0.2)), 0);
 }
 
+TEST(Simulator, ARefusedStartIsTheGivenOneUnlessOnlyItsPlacementErrorIsInvalid) {
+  const auto error_at = [](double x_m) {
+    SimulatorSettings settings;
+    settings.T_world_start = {x_m, 0.0, 0.0};
+    settings.as_built.enabled = true;
+    settings.as_built.placement.position_m = 0.2;
+    try {
+      SmallSimulation(kTrackedUrdf, make_flat_world(R"(<geom name="wall" type="box" pos="9 0 1" size="2 2 1"/>
+          <geom name="front" type="box" pos="1.52 0 1" size="1 2 1"/><geom name="back" type="box" pos="-1.52 0 1" size="1 2 1"/>
+          <geom name="left" type="box" pos="0 1.4 1" size="0.5 1 1"/><geom name="right" type="box" pos="0 -1.4 1" size="0.5 1 1"/>)"),
+                      settings);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(error_at(9.0), "start pose (9.00, 0.00): in collision with wall");
+  EXPECT_THAT(error_at(0.0), ::testing::EndsWith(": with the error of as_built.placement; (0.00, 0.00) without it is "
+                                                 "valid"));
+}
+
 TEST(Simulator, ControlThatIsNotFiniteEndsTheSimulationWithAnError) {
   const std::string too_slow = R"(<mujoco><option timestep="0.01"/><worldbody>
       <geom type="plane" size="20 20 0.1" conaffinity="2"/></worldbody></mujoco>)";
