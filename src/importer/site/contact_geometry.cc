@@ -143,6 +143,12 @@ std::pair<double, double> heights_above(const GroundSurface& ground, const Mesh&
   return {lowest, highest};
 }
 
+/// Text of a height without the digits below 0.1 mm.
+std::string height_text(double height_m) {
+  constexpr double kPerMeter = 1e4;
+  return fmt::format("{:.4g}", std::round(kPerMeter * height_m) / kPerMeter + 0.0);  // adding 0 removes the sign of -0
+}
+
 SiteShape contact_shape(std::string name, SiteShapeType type) {
   return {.name = std::move(name), .type = type, .use = ShapeUse::kContactOnly, .material = kContactMaterial};
 }
@@ -168,7 +174,8 @@ void add_ground(const GroundSurface& ground, const GridGeometry& grid, ContactGe
     plane.size_m << half, 0.0;
     contact.shapes.push_back(std::move(plane));
     contact.rows.push_back(
-        {"ground", fmt::format("{}: a level plane at {:.4g} m, also outside of the mesh", found, middle_m), "--start"});
+        {"ground", fmt::format("{}: a level plane at {} m, also outside of the mesh", found, height_text(middle_m)),
+         "--start"});
     return;
   }
   SiteShape field = contact_shape("contact_ground", SiteShapeType::kHeightField);
@@ -176,9 +183,9 @@ void add_ground(const GroundSurface& ground, const GridGeometry& grid, ContactGe
   contact.shapes.push_back(std::move(field));
   contact.rows.push_back(
       {"ground",
-       fmt::format("{}: a height field of {} x {} cells of {:g} m from {:.4g} to {:.4g} m; cells "
+       fmt::format("{}: a height field of {} x {} cells of {:g} m from {} to {} m; cells "
                    "without ground have the height of a drop or of the nearest ground",
-                   found, grid.width, grid.height, grid.resolution_m, double{*lowest}, double{*highest}),
+                   found, grid.width, grid.height, grid.resolution_m, height_text(*lowest), height_text(*highest)),
        "--start, --contact-cell"});
 }
 

@@ -365,5 +365,14 @@ TEST(ContactGeometry, TheCellGrowsWithTheSiteAndIsReported) {
   EXPECT_THAT(contact.rows.back().text, HasSubstr("cells of 0.4 m"));
 }
 
+TEST(ContactGeometry, TheRowOfALevelGroundHasItsHeightWithoutTheDigitsOfRounding) {
+  for (const auto& [height_m, text] :
+       {std::pair(-4.47e-10, "a level plane at 0 m,"), {0.25, "a level plane at 0.25 m,"}}) {
+    Mesh floor;
+    add_quad(floor, {0, 0, height_m}, {4, 0, height_m}, {4, 4, height_m}, {0, 4, height_m});
+    EXPECT_THAT(contact_geometry(floor, {}, {}).rows.front().text, HasSubstr(text));
+  }
+}
+
 }  // namespace
 }  // namespace patrol::importer::contact_geometry_test
