@@ -43,14 +43,26 @@ bool is_inside_geom(const mjModel& site, int geom, const Eigen::Vector3d& p) {
 
 }  // namespace
 
+bool is_touchable(const mjModel& site, int geom) {
+  return site.geom_contype[geom] != 0 || site.geom_conaffinity[geom] != 0;
+}
+
 std::optional<std::string> enclosing_solid(const mjModel& site, const mjData& data, const Eigen::Vector3d& point_m) {
   for (int geom = 0; geom < site.ngeom; ++geom) {
-    if (site.geom_contype[geom] == 0 && site.geom_conaffinity[geom] == 0) continue;
+    if (!is_touchable(site, geom)) continue;
     const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> R(data.geom_xmat + 9 * geom);
     const Eigen::Vector3d p = R.transpose() * (point_m - Eigen::Map<const Eigen::Vector3d>(data.geom_xpos + 3 * geom));
     if (is_inside_geom(site, geom, p)) return std::string(sim::name_of(site, mjOBJ_GEOM, geom));
   }
   return std::nullopt;
+}
+
+bool is_below_back_face(const mjModel& site, const mjData& data, const Eigen::Vector3d& point_m) {
+  constexpr mjtByte kSeenGroups[mjNGROUP] = {1, 0, 1, 0, 0, 0};
+  const mjtNum up[3] = {0.0, 0.0, 1.0};
+  mjtNum normal[3] = {0.0, 0.0, 0.0};
+  const mjtNum distance = mj_ray(&site, &data, point_m.data(), up, kSeenGroups, true, -1, nullptr, normal);
+  return distance >= 0.0 && normal[2] > 0.0;
 }
 
 }  // namespace patrol::importer

@@ -11,6 +11,7 @@
 #include "core/geometry/distance_transform.h"
 #include "core/map_cells.h"
 #include "core/random.h"
+#include "importer/site/region_choice.h"
 
 namespace patrol::importer {
 namespace {
@@ -34,15 +35,15 @@ Grid<std::uint8_t> cells_with_clearance(const OccupancyGrid& plan, double min_cl
   return result;
 }
 
-/// Marks the cells connected to `from` with `label`, and returns their number. Cells of the value 1 are open.
-std::size_t flood(Grid<std::uint8_t>& open, Cell from, std::uint8_t label) {
+/// Marks the cells connected to `from` with `label`, and returns their area. Cells of the value 1 are open.
+RegionArea flood(Grid<std::uint8_t>& open, Cell from, std::uint8_t label, double margin_m) {
   std::deque<Cell> front = {from};
   open.at(from) = label;
-  std::size_t count = 0;
+  RegionArea area;
   while (!front.empty()) {
     const Cell cell = front.front();
     front.pop_front();
-    ++count;
+    area.add(open.geometry(), cell, margin_m);
     for (const Cell next : {Cell{cell.col + 1, cell.row}, Cell{cell.col - 1, cell.row}, Cell{cell.col, cell.row + 1},
                             Cell{cell.col, cell.row - 1}}) {
       if (!open.geometry().contains(next) || open.at(next) != 1) continue;
@@ -50,7 +51,7 @@ std::size_t flood(Grid<std::uint8_t>& open, Cell from, std::uint8_t label) {
       front.push_back(next);
     }
   }
-  return count;
+  return area;
 }
 
 std::optional<Cell> nearest_open(const Grid<std::uint8_t>& open, const Eigen::Vector2d& p_m) {
@@ -66,27 +67,48 @@ std::optional<Cell> nearest_open(const Grid<std::uint8_t>& open, const Eigen::Ve
   return best;
 }
 
-std::optional<Cell> seed_of_largest(const Grid<std::uint8_t>& open) {
+/// Cell of a region, and whether the region is inside of walls.
+struct RegionSeed {
+  Cell cell;
+  bool is_enclosed = false;
+};
+
+std::optional<RegionSeed> seed_by_area(const Grid<std::uint8_t>& open, double margin_m) {
+  const GridGeometry& grid = open.geometry();
   Grid<std::uint8_t> rest = open;
-  std::optional<Cell> best;
-  std::size_t max_count = 0;
-  for (int row = 0; row < open.geometry().height; ++row) {
-    for (int col = 0; col < open.geometry().width; ++col) {
+  std::vector<Cell> seeds;
+  std::vector<RegionArea> areas;
+  for (int row = 0; row < grid.height; ++row) {
+    for (int col = 0; col < grid.width; ++col) {
       if (rest.at({col, row}) != 1) continue;
-      const std::size_t count = flood(rest, {col, row}, 2);
-      if (count > max_count) max_count = count, best = Cell{col, row};
+      seeds.push_back({col, row});
+      areas.push_back(flood(rest, {col, row}, 2, margin_m));
     }
   }
-  return best;
+  const double cell_m2 = grid.resolution_m * grid.resolution_m;
+  const std::optional<RegionChoice> choice = choose_region(
+      areas, [&](std::size_t i) { return cell_m2 * static_cast<double>(areas[i].num_cells) >= kMinEnclosed_m2; });
+  if (!choice) return std::nullopt;
+  return RegionSeed{.cell = seeds[choice->index], .is_enclosed = choice->is_enclosed};
 }
 
 }  // namespace
 
-FreeSpace::FreeSpace(const OccupancyGrid& plan, double min_clearance_m, const std::optional<Eigen::Vector2d>& p_start_m)
+double area_with_clearance_m2(const OccupancyGrid& plan, double min_clearance_m) {
+  const Grid<std::uint8_t> open = cells_with_clearance(plan, min_clearance_m);
+  const auto num_open = std::count(open.values().begin(), open.values().end(), std::uint8_t{1});
+  return plan.geometry().resolution_m * plan.geometry().resolution_m * static_cast<double>(num_open);
+}
+
+FreeSpace::FreeSpace(const OccupancyGrid& plan, double min_clearance_m, const std::optional<Eigen::Vector2d>& p_start_m,
+                     double margin_m)
     : grid_(plan.geometry()), region_(cells_with_clearance(plan, min_clearance_m)) {
-  const std::optional<Cell> seed = p_start_m ? nearest_open(region_, *p_start_m) : seed_of_largest(region_);
+  std::optional<RegionSeed> seed;
+  if (!p_start_m) seed = seed_by_area(region_, margin_m);
+  else if (const std::optional<Cell> nearest = nearest_open(region_, *p_start_m)) seed = RegionSeed{.cell = *nearest};
   if (!seed) throw InputError(fmt::format("the plan has no free cell with a clearance of {:.2g} m", min_clearance_m));
-  flood(region_, *seed, 2);
+  is_enclosed_ = seed->is_enclosed;
+  flood(region_, seed->cell, 2, margin_m);
   for (int row = 0; row < grid_.height; ++row) {
     for (int col = 0; col < grid_.width; ++col) {
       std::uint8_t& cell = region_.at({col, row});

@@ -15,8 +15,13 @@ namespace patrol::importer {
 class FreeSpace {
  public:
   /// Free cells with at least `min_clearance_m` that are connected to each other: the region that contains the cell
-  /// nearest to `p_start_m`, or the largest region. Throws InputError if there is none.
-  FreeSpace(const OccupancyGrid& plan, double min_clearance_m, const std::optional<Eigen::Vector2d>& p_start_m);
+  /// nearest to `p_start_m`, or the one of `choose_region` with at least kMinEnclosed_m2. `margin_m`: width of the
+  /// margin along the border of the plan that does not count as area. Throws InputError if there is none.
+  FreeSpace(const OccupancyGrid& plan, double min_clearance_m, const std::optional<Eigen::Vector2d>& p_start_m,
+            double margin_m = 0.0);
+
+  /// Whether the region is inside of walls, although one with its margin is larger.
+  bool is_enclosed() const { return is_enclosed_; }
 
   bool contains(const Eigen::Vector2d& p_m) const;
   /// Returns the center of the nearest cell of the region.
@@ -28,7 +33,11 @@ class FreeSpace {
   GridGeometry grid_;
   Grid<std::uint8_t> region_;  ///< 1 in the region
   std::vector<Eigen::Vector2d> cells_m_;
+  bool is_enclosed_ = false;
 };
+
+/// Returns the area of the free cells with at least `min_clearance_m` to cells that are occupied or unknown, m2.
+double area_with_clearance_m2(const OccupancyGrid& plan, double min_clearance_m);
 
 /// Checks whether a robot can stand at a position of a floor plan.
 class ClearanceCheck {

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "core/geometry/angles.h"
 #include "core/text.h"
 #include "importer/site/free_space.h"
+#include "importer/site/region_choice.h"
 #include "importer/site/site_import.h"
 #include "importer/site/site_plan.h"
 #include "io/files/tour_stations.h"
@@ -46,20 +48,50 @@ InputError station_error(const MissionOptions& options, const io::TourStation& r
                      fmt::format("{}: ({:g}, {:g}): {}", row.name, row.x, row.y, what));
 }
 
-/// Gives a site without a floor plan one: that of the ground at a point, or the largest one. It contains the stations.
-void require_plan(const std::optional<Eigen::Vector2d>& near, const std::vector<Eigen::Vector2d>& stations_m,
-                  const std::string& ground, ImportedSite& site) {
-  if (site.map) return;
+/// Reasons for which a mission is not simply on the largest ground (SitePlan).
+struct RegionReasons {
+  bool is_enclosed = false;
+  bool is_too_narrow = false;
+};
+
+void add_region_row(const MissionOptions& options, const RegionReasons& reasons, ImportedSite& site) {
+  if (reasons.is_enclosed) {
+    site.assumptions.push_back(
+        {"region",
+         fmt::format("inside of walls: the ground outside has no end, and {:g} m of it around the site do not count as "
+                     "area",
+                     SitePlanSettings{}.margin_m),
+         "--start"});
+  } else if (reasons.is_too_narrow) {
+    site.assumptions.push_back(
+        {"region",
+         fmt::format("outside of walls: the ground inside has less than {:g} m2 with the clearance of {:.2f} m that {} "
+                     "needs",
+                     kMinEnclosed_m2, options.clearance_m, options.robot),
+         "--start, --robot"});
+  }
+}
+
+/// Gives a site without a floor plan one: that of the ground at a point, or of `plan_of`. It contains the stations.
+/// `ground`: name of the ground at the point.
+RegionReasons require_plan(const MissionOptions& options, const std::optional<Eigen::Vector2d>& near,
+                           const std::vector<Eigen::Vector2d>& stations_m, const std::string& ground,
+                           ImportedSite& site) {
+  if (site.map) return {};
   const sim::ModelPtr model = compile_site(site);
+  SitePlan plan;
   try {
-    site.map = plan_of(*model, near, stations_m);
+    plan = plan_of(*model, near, stations_m, {.clearance_m = options.clearance_m});
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", site.source, error.what()));
   }
+  site.map = std::move(plan.map);
+  const std::string name = near ? ground : plan.is_enclosed ? "largest enclosed" : "largest connected";
   site.assumptions.push_back({"map",
-                              fmt::format("floor plan of the {} ground by what lidars see, cells of {:g} m", ground,
+                              fmt::format("floor plan of the {} ground by what lidars see, cells of {:g} m", name,
                                           site.map->geometry().resolution_m),
                               "--start"});
+  return {.is_enclosed = plan.is_enclosed, .is_too_narrow = plan.is_too_narrow};
 }
 
 /// Refuses a start that the options name and at which the robot cannot stand.
@@ -102,7 +134,7 @@ void add_table_mission(const MissionOptions& options, ImportedSite& site) {
   std::vector<Eigen::Vector2d> stations_m;
   for (const io::TourStation& row : rows) stations_m.emplace_back(row.x, row.y);
   try {
-    require_plan(start.position(), stations_m, options.start ? "start's" : "first station's", site);
+    require_plan(options, start.position(), stations_m, options.start ? "start's" : "first station's", site);
   } catch (const InputError& error) {
     if (options.start) throw;
     throw station_error(options, rows.front(), error.what());
@@ -126,10 +158,10 @@ void add_table_mission(const MissionOptions& options, ImportedSite& site) {
   site.route = Route{.stations = stations_of(rows, start)};
 }
 
-FreeSpace free_space_of(const MissionOptions& options, const std::optional<Eigen::Vector2d>& near,
+FreeSpace free_space_of(const MissionOptions& options, const std::optional<Eigen::Vector2d>& near, double margin_m,
                         const ImportedSite& site) {
   try {
-    return {*site.map, options.clearance_m, near};
+    return {*site.map, options.clearance_m, near, margin_m};
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}; the site needs a floor of that size", site.source, error.what()));
   }
@@ -137,9 +169,12 @@ FreeSpace free_space_of(const MissionOptions& options, const std::optional<Eigen
 
 void add_random_mission(const MissionOptions& options, ImportedSite& site) {
   const std::optional<Eigen::Vector2d> near = options.start ? std::optional(options.start->position()) : std::nullopt;
-  require_plan(near, {}, near ? "start's" : "largest connected", site);
+  const double margin_m = site.map ? 0.0 : SitePlanSettings{}.margin_m;
+  RegionReasons reasons = require_plan(options, near, {}, "start's", site);
   check_start(options, site);
-  const FreeSpace space = free_space_of(options, near, site);
+  const FreeSpace space = free_space_of(options, near, margin_m, site);
+  reasons.is_enclosed |= space.is_enclosed();
+  add_region_row(options, reasons, site);
   if (options.start) {
     site.T_site_start = *options.start;
   } else {  // the first random station

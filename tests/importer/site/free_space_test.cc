@@ -34,6 +34,34 @@ TEST(FreeSpace, OfAStartIsTheRegionNearestToIt) {
   EXPECT_FALSE(space.contains({2.0, 2.0}));
 }
 
+/// Room of 4 x 4 m with a door of 0.8 m, and 2 m of ground around it up to the border of the plan.
+OccupancyGrid room_with_door() {
+  OccupancyGrid plan({.resolution_m = 0.1, .width = 84, .height = 84, .origin_m = {-4.2, -4.2}}, 0);
+  for (int i = 21; i < 63; ++i) {
+    for (const Cell cell : {Cell{i, 21}, Cell{i, 62}, Cell{21, i}}) plan.at(cell) = 100;
+    if (i < 38 || i >= 46) plan.at({62, i}) = 100;
+  }
+  return plan;
+}
+
+TEST(FreeSpace, IsInsideOfWallsWhereTheGroundOutsideIsOnlyTheMarginBehindANarrowDoor) {
+  const FreeSpace space(room_with_door(), 0.5, std::nullopt, 2.0);
+  EXPECT_TRUE(space.is_enclosed());
+  EXPECT_TRUE(space.contains({0.0, 0.0}));
+  EXPECT_FALSE(space.contains({3.2, 0.0}));
+  const FreeSpace given(room_with_door(), 0.5, std::nullopt);
+  EXPECT_FALSE(given.is_enclosed());
+  EXPECT_TRUE(given.contains({3.2, 0.0}));
+  const FreeSpace through_the_door(room_with_door(), 0.3, std::nullopt, 2.0);
+  EXPECT_FALSE(through_the_door.is_enclosed());
+  EXPECT_TRUE(through_the_door.contains({3.2, 0.0}));
+}
+
+TEST(FreeSpace, APlaceOfLessThan1SquareMeterInsideOfWallsIsNotTaken) {
+  EXPECT_FALSE(FreeSpace(room_with_door(), 1.7, std::nullopt, 2.0).is_enclosed());
+  EXPECT_NEAR(area_with_clearance_m2(two_rooms(), 0.5), 3.2 * 3.2 + 2.1 * 3.2, 1e-9);
+}
+
 TEST(FreeSpace, WithoutRoomForTheClearanceIsRefused) {
   EXPECT_THROW(FreeSpace(two_rooms(), 2.5, std::nullopt), InputError);
 }

@@ -166,6 +166,33 @@ TEST_F(PlanImport, AStartOutsideOrInAWallIsRefusedWithATableAndWithRandomStation
   }
 }
 
+/// Imports a MuJoCo model of a closed room of 5 x 5 m on an endless plane.
+ImportedSite import_room(const MissionOptions& mission) {
+  const test::TemporaryFolder folder;
+  test::write_bytes(folder / "scene.xml", R"(<mujoco><worldbody><geom type="plane" size="0 0 0.1"/>
+<geom name="north" type="box" size="2.6 0.1 1" pos="0 2.6 1"/><geom type="box" size="2.6 0.1 1" pos="0 -2.6 1"/>
+<geom type="box" size="0.1 2.6 1" pos="2.6 0 1"/><geom type="box" size="0.1 2.6 1" pos="-2.6 0 1"/>
+</worldbody></mujoco>)");
+  return import_site({.file = folder / "scene.xml", .name = "scene", .mission = mission});
+}
+
+std::string row_of(const ImportedSite& site, const std::string& subject) {
+  for (const Assumption& row : site.assumptions) {
+    if (row.subject == subject) return row.text;
+  }
+  return {};
+}
+
+TEST(SiteImport, RandomStationsOfAClosedRoomOnAnEndlessPlaneAreInsideWithARow) {
+  const ImportedSite site = import_room({.num_random = 3, .clearance_m = 0.7});
+  for (const Station& station : site.route->stations)
+    EXPECT_LE(station.T_route_body.position().cwiseAbs().maxCoeff(), 1.85);
+  EXPECT_LE(site.T_site_start.position().cwiseAbs().maxCoeff(), 1.85);
+  EXPECT_EQ(row_of(site, "region"),
+            "inside of walls: the ground outside has no end, and 2 m of it around the site do not count as area");
+  EXPECT_EQ(row_of(import_room({.num_random = 1, .start = Pose2{3.6, 0.0, 0.0}, .clearance_m = 0.7}), "region"), "");
+}
+
 TEST_F(PlanImport, APlanOfTooManySpecksIsRefusedBeforeTheSimulatorReadsIt) {
   OccupancyGrid specks({.resolution_m = 0.1, .width = 500, .height = 500}, 0);
   for (int row = 0; row < 500; row += 2) {
