@@ -187,6 +187,18 @@ void add_random_mission(const MissionOptions& options, ImportedSite& site) {
   site.route = Route{.stations = random_stations(space, site.T_site_start, options.num_random, options.seed)};
 }
 
+/// Checks a start of a site that has neither stations nor a floor plan.
+void check_start_without_mission(const MissionOptions& options, ImportedSite& site) {
+  const sim::ModelPtr model = compile_site(site);
+  try {
+    refuse_start_in_solid(*model, options.start->position());
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", site.source, error.what()));
+  }
+  site.assumptions.push_back({"start", "chooses the ground of meshes only: without stations, the site has no mission",
+                              "--stations or --random-stations"});
+}
+
 }  // namespace
 
 void add_mission(const MissionOptions& options, ImportedSite& site) {
@@ -195,6 +207,7 @@ void add_mission(const MissionOptions& options, ImportedSite& site) {
     throw InputError("--stations and --random-stations are mutually exclusive: only one of them is allowed");
   if (!options.stations.empty()) add_table_mission(options, site);
   else if (options.num_random > 0) add_random_mission(options, site);
+  else if (options.start && !site.map) check_start_without_mission(options, site);
 }
 
 }  // namespace patrol::importer

@@ -193,6 +193,15 @@ TEST(SiteImport, RandomStationsOfAClosedRoomOnAnEndlessPlaneAreInsideWithARow) {
   EXPECT_EQ(row_of(import_room({.num_random = 1, .start = Pose2{3.6, 0.0, 0.0}, .clearance_m = 0.7}), "region"), "");
 }
 
+TEST(SiteImport, AStartInsideOfASolidIsRefusedWithoutStationsAndAnotherOneHasARow) {
+  EXPECT_THAT(
+      [] {
+        import_room({.start = Pose2{0.0, 2.6, 0.0}});
+      },
+      ThrowsMessage<InputError>("scene.xml: start (0.00, 2.60): inside of north"));
+  EXPECT_THAT(row_of(import_room({.start = Pose2{0.0, 0.0, 0.0}}), "start"), HasSubstr("the site has no mission"));
+}
+
 TEST_F(PlanImport, APlanOfTooManySpecksIsRefusedBeforeTheSimulatorReadsIt) {
   OccupancyGrid specks({.resolution_m = 0.1, .width = 500, .height = 500}, 0);
   for (int row = 0; row < 500; row += 2) {
