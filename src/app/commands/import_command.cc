@@ -14,6 +14,8 @@
 #include "app/mapping/log_site.h"
 #include "app/record/run_directory.h"
 #include "app/scenario/data_folders.h"
+#include "app/scenario/mounts.h"
+#include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "importer/robot_import.h"
 #include "importer/site/site_format.h"
@@ -79,9 +81,16 @@ void refuse_known_name(const std::string& robot, const std::filesystem::path& ou
                                out.string(), robot, known.parent_path().string()));
 }
 
-/// Sets the space that a robot needs to turn in place with a margin, and to pass.
-void set_clearances(const RobotDescription& robot, importer::MissionOptions& mission) {
+/// Sets the height of the lidar of a robot, and the space that it needs to turn in place with a margin, and to pass.
+void use_robot(const std::string& name, importer::MissionOptions& mission) {
   constexpr double kMargin_m = 0.1;
+  const std::filesystem::path data_root = find_data_root({});
+  const RobotDescription robot = io::load_mounted_robot(find_robot(name, data_root).string(),
+                                                        sensor_mounts(default_scenario(name, data_root).mounts))
+                                     .description;
+  mission.robot = name;
+  if (const auto lidar = robot.T_body_sensor.find("lidar"); lidar != robot.T_body_sensor.end())
+    mission.lidar_height_m = robot.body_height_m() + lidar->second.position.z();
   mission.clearance_m = robot.outline_radius_m() + kMargin_m;
   mission.half_width_m = 0.0;
   for (const Eigen::Vector2d& corner : robot.footprint_m)
@@ -102,8 +111,9 @@ importer::ImportedSite import_with_progress(importer::SiteImportOptions options)
   return importer::import_site(options);
 }
 
-/// Returns false, without a folder, if the user interrupts.
-bool write_unless_interrupted(const importer::ImportedSite& site, const std::filesystem::path& out) {
+/// Returns the assumptions; none, without a folder, if the user interrupts.
+std::optional<std::vector<importer::Assumption>> write_unless_interrupted(const importer::ImportedSite& site,
+                                                                          const std::filesystem::path& out) {
   const InterruptGuard guard;
   return importer::write_site(site, out, [&] { return guard.is_interrupted(); });
 }
@@ -132,29 +142,28 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
 ExitCode import_site_command(const ImportSiteOptions& options) {
   const std::filesystem::path file = log_of(options.file);
   importer::refuse_unused_options(file, options.given);
-  importer::SiteImportOptions import{.file = file,
-                                     .name = folder_name(options.out),
-                                     .wall_height_m = options.wall_height_m,
-                                     .scale = options.scale,
-                                     .up = options.up,
-                                     .contact_cell_m = options.contact_cell_m,
-                                     .packages = to_map<std::filesystem::path>(options.packages, "--package"),
-                                     .without = {options.without.begin(), options.without.end()},
-                                     .xacro_arguments = to_map<std::string>(options.xacro_arguments, "--xacro-arg"),
-                                     .python = python_with_xacro(),
-                                     .mission = {.stations = options.stations,
-                                                 .num_random = options.random_stations,
-                                                 .seed = options.seed,
-                                                 .robot = options.robot}};
+  importer::SiteImportOptions import{
+      .file = file,
+      .name = folder_name(options.out),
+      .wall_height_m = options.wall_height_m,
+      .scale = options.scale,
+      .up = options.up,
+      .contact_cell_m = options.contact_cell_m,
+      .packages = to_map<std::filesystem::path>(options.packages, "--package"),
+      .without = {options.without.begin(), options.without.end()},
+      .xacro_arguments = to_map<std::string>(options.xacro_arguments, "--xacro-arg"),
+      .python = python_with_xacro(),
+      .mission = {.stations = options.stations, .num_random = options.random_stations, .seed = options.seed}};
   if (!options.start.empty()) import.mission.start = parse_pose(options.start, "--start", {}).pose();
-  set_clearances(io::load_robot_description(find_robot(options.robot, find_data_root({})).string()), import.mission);
+  use_robot(options.robot, import.mission);
   const bool is_log = importer::site_format(file) == importer::SiteFormat::kLog;
   const std::optional<importer::ImportedSite> site = is_log ? import_log_site(import) : import_with_progress(import);
-  if (!site || !write_unless_interrupted(*site, options.out)) {
+  const auto assumptions = site ? write_unless_interrupted(*site, options.out) : std::nullopt;
+  if (!assumptions) {
     fmt::print(stderr, "patrol: interrupted; nothing was written\n");
     return ExitCode::kProgramFailed;
   }
-  print(site->assumptions, options.out);
+  print(*assumptions, options.out);
   return ExitCode::kDone;
 }
 

@@ -215,11 +215,7 @@ void add_boxes(const std::vector<Eigen::AlignedBox3d>& boxes, ContactGeometry& c
 SiteMaterial contact_material() { return {.name = kContactMaterial, .rgba = {0.5, 0.5, 0.5, 1.0}}; }
 
 ContactGeometry contact_geometry(const Mesh& mesh, const Mesh& given, const ContactOptions& options) {
-  constexpr double kMaxCoordinate_m = 1e5;
-  if (max_coordinate_m(mesh) > kMaxCoordinate_m)
-    throw InputError(
-        fmt::format("coordinates up to {:.3g} m: must be at most {:g} m: move the origin of the file near the site",
-                    max_coordinate_m(mesh), kMaxCoordinate_m));
+  if (max_coordinate_m(mesh) > kMaxCoordinate_m) throw InputError(far_text(max_coordinate_m(mesh)));
   const Split parts = split(mesh);
   double cell_m = options.cell_m;
   for (int attempt = 0;; ++attempt, cell_m *= 2.0) {

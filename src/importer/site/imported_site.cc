@@ -2,11 +2,13 @@
 
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "importer/output_folder.h"
+#include "importer/site/compiled_site.h"
 #include "importer/site/site_mjcf.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
@@ -52,6 +54,13 @@ sim::ModelPtr compile_in(const ImportedSite& site, const std::filesystem::path& 
   }
 }
 
+/// Compiles a site whose files are in a folder, and checks its coordinates.
+sim::ModelPtr checked_model(const ImportedSite& site, const std::filesystem::path& folder) {
+  sim::ModelPtr model = compile_in(site, folder);
+  check_coordinates(*model, site.source);
+  return model;
+}
+
 /// Text as a YAML scalar, quoted where YAML needs it.
 std::string yaml_text(const std::string& text) {
   YAML::Emitter out;
@@ -87,6 +96,11 @@ void check(const ImportedSite& site) {
 
 }  // namespace
 
+std::string far_text(double coordinate_m) {
+  return fmt::format("coordinates up to {:.3g} m: must be at most {:g} m: move the origin of the file near the site",
+                     coordinate_m, kMaxCoordinate_m);
+}
+
 void use_height_fields_as_ground(ImportedSite& site) {
   for (const SiteShape& shape : site.shapes) {
     const bool has_contact = shape.use == ShapeUse::kSolid || shape.use == ShapeUse::kContactOnly;
@@ -94,15 +108,14 @@ void use_height_fields_as_ground(ImportedSite& site) {
   }
 }
 
-bool write_site(const ImportedSite& site, const std::filesystem::path& folder,
-                const std::function<bool()>& is_interrupted) {
+std::optional<std::vector<Assumption>> write_site(const ImportedSite& site, const std::filesystem::path& folder,
+                                                  const std::function<bool()>& is_interrupted) {
   require_folder_name(site.name, site.source, "site");
   check(site);
   OutputFolder output(folder);
   write_model(site, output.staging());
   io::save_settings(output.staging() / (site.name + ".yaml"), sim::SiteSettings{.ground = site.ground},
                     "Settings of the site (src/sim/site_settings.h)");
-  io::save_text(output.staging() / "README.md", report_of(site));
   if (site.map) {
     std::filesystem::create_directories(output.staging() / "map");
     io::save_map(output.staging() / "map" / "map.yaml", *site.map);
@@ -110,11 +123,13 @@ bool write_site(const ImportedSite& site, const std::filesystem::path& folder,
   }
   write_mission(site, output.staging());
   const auto must_stop = [&] { return is_interrupted && is_interrupted(); };
-  if (must_stop()) return false;
-  compile_in(site, output.staging());
-  if (must_stop()) return false;
+  if (must_stop()) return std::nullopt;
+  std::vector<Assumption> rows = site.assumptions;
+  for (Assumption& row : rows_of_compiled(*checked_model(site, output.staging()), site)) rows.push_back(std::move(row));
+  io::save_text(output.staging() / "README.md", report_of(site, rows));
+  if (must_stop()) return std::nullopt;
   output.publish();
-  return true;
+  return rows;
 }
 
 sim::ModelPtr compile_site(const ImportedSite& site) {
@@ -122,10 +137,10 @@ sim::ModelPtr compile_site(const ImportedSite& site) {
   check(site);
   const OutputFolder output(std::filesystem::temp_directory_path() / ("site_" + site.name));
   write_model(site, output.staging());
-  return compile_in(site, output.staging());
+  return checked_model(site, output.staging());
 }
 
-std::string report_of(const ImportedSite& site) {
+std::string report_of(const ImportedSite& site, const std::vector<Assumption>& assumptions) {
   std::size_t triangles = 0, solid = 0;
   for (const SiteShape& shape : site.shapes) {
     triangles += shape.mesh.triangles.size();
@@ -138,7 +153,7 @@ std::string report_of(const ImportedSite& site) {
              "# {}\n\nMade by `patrol import site` from `{}`: {}. `patrol site {}` reports the ground and the "
              "obstacles.\n\n## Assumptions\n\n",
              io::on_one_line(site.name), io::on_one_line(site.source), content, site.name) +
-         to_markdown(site.assumptions, "None: the file determines the site.\n");
+         to_markdown(assumptions, "None: the file determines the site.\n");
 }
 
 }  // namespace patrol::importer

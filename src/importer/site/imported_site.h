@@ -19,6 +19,12 @@
 
 namespace patrol::importer {
 
+/// Maximum absolute coordinate of a site: the floats of lidars and cameras are 8 mm apart there.
+inline constexpr double kMaxCoordinate_m = 1e5;
+
+/// Returns the text that refuses larger coordinates.
+std::string far_text(double coordinate_m);
+
 /// Use of a shape of a site. Physics keeps the shapes with contact only.
 enum class ShapeUse : std::uint8_t {
   kSolid,        ///< visible to cameras and lidars, with contact
@@ -76,14 +82,15 @@ struct ImportedSite {
   std::string mjcf = {};  ///< model of the site, which replaces materials and shapes; empty: made of these
   std::vector<SiteMaterial> materials = {};
   std::vector<SiteShape> shapes = {};
-  std::vector<SiteFile> files = {};       ///< textures and other files of the shapes
-  sim::GroundSettings ground = {};        ///< written to NAME.yaml
-  std::optional<OccupancyGrid> map = {};  ///< floor plan in `site`, written to map/ for runs on a known map
-  std::optional<Route> route = {};        ///< mission in `site`; none: neither routes/ nor scenarios/ are written
-  Pose2 T_site_start = {};                ///< start of the mission
-  std::string scenario_keys = {};         ///< further lines of the scenario
-  std::string stack_keys = {};            ///< further lines of its section `stack`
-  std::string robot = "wheeled";          ///< robot of the scenario
+  std::vector<SiteFile> files = {};           ///< textures and other files of the shapes
+  sim::GroundSettings ground = {};            ///< written to NAME.yaml
+  std::optional<OccupancyGrid> map = {};      ///< floor plan in `site`, written to map/ for runs on a known map
+  std::optional<Route> route = {};            ///< mission in `site`; none: neither routes/ nor scenarios/ are written
+  Pose2 T_site_start = {};                    ///< start of the mission
+  std::string scenario_keys = {};             ///< further lines of the scenario
+  std::string stack_keys = {};                ///< further lines of its section `stack`
+  std::string robot = "wheeled";              ///< robot of the scenario
+  std::optional<double> lidar_height_m = {};  ///< of the lidar of the robot above the ground; none: without a lidar
   std::vector<Assumption> assumptions = {};
 };
 
@@ -96,16 +103,17 @@ std::string to_mjcf(const ImportedSite& site);
 /// Writes NAME.xml, NAME.yaml, README.md with the assumptions, meshes/, textures/, for a floor plan map/, and for a
 /// mission routes/patrol.json and scenarios/patrol.yaml: first into a folder beside it, in which MuJoCo compiles the
 /// site, then renamed. Throws InputError if the folder exists and is not empty, cannot be written, or MuJoCo refuses
-/// the site; nothing is left behind then. Returns false, with nothing left behind, if `is_interrupted` returns true
+/// the site, or if it is beyond `kMaxCoordinate_m`; nothing is left behind then. Returns the assumptions with those
+/// about the compiled site (compiled_site.h), or none, with nothing left behind, if `is_interrupted` returns true
 /// before or after the compilation.
-bool write_site(const ImportedSite& site, const std::filesystem::path& folder,
-                const std::function<bool()>& is_interrupted = {});
+std::optional<std::vector<Assumption>> write_site(const ImportedSite& site, const std::filesystem::path& folder,
+                                                  const std::function<bool()>& is_interrupted = {});
 
 /// Compiles a site without writing its folder: its files lie in a temporary folder meanwhile. Throws InputError if
-/// MuJoCo refuses the site.
+/// MuJoCo refuses the site, or if it is beyond `kMaxCoordinate_m`.
 sim::ModelPtr compile_site(const ImportedSite& site);
 
-/// Returns a Markdown page with the numbers of shapes and triangles and the table of assumptions.
-std::string report_of(const ImportedSite& site);
+/// Returns a Markdown page with the numbers of shapes and triangles and a table of assumptions.
+std::string report_of(const ImportedSite& site, const std::vector<Assumption>& assumptions);
 
 }  // namespace patrol::importer

@@ -203,6 +203,7 @@ void check_start_without_mission(const MissionOptions& options, ImportedSite& si
 
 void add_mission(const MissionOptions& options, ImportedSite& site) {
   site.robot = options.robot;
+  site.lidar_height_m = options.lidar_height_m;
   if (!options.stations.empty() && options.num_random > 0)
     throw InputError("--stations and --random-stations are mutually exclusive: only one of them is allowed");
   if (!options.stations.empty()) add_table_mission(options, site);

@@ -16,15 +16,16 @@ namespace patrol::importer {
 
 /// Mission of an imported site. At most one of `stations` and `num_random`.
 struct MissionOptions {
-  std::filesystem::path stations = {};  ///< CSV with the columns name, x, y and optionally heading_deg, priority,
-                                        ///< earliest_s, latest_s, service_s (without effect); empty: none
-  int num_random = 0;                   ///< number of random stations in free space
-  std::uint64_t seed = 1;               ///< seed of random stations
-  std::optional<Pose2> start = {};      ///< in site; none: by rule
-  bool start_is_recorded = false;       ///< the start is that of a recorded path, which needs no clearance
-  double clearance_m = 0.5;             ///< distance of start and stations from walls and unknown space
-  double half_width_m = 0.3;            ///< of the robot, which does not fit through narrower passages
-  std::string robot = "wheeled";        ///< robot of the scenario
+  std::filesystem::path stations = {};        ///< CSV with the columns name, x, y and optionally heading_deg, priority,
+                                              ///< earliest_s, latest_s, service_s (without effect); empty: none
+  int num_random = 0;                         ///< number of random stations in free space
+  std::uint64_t seed = 1;                     ///< seed of random stations
+  std::optional<Pose2> start = {};            ///< in site; none: by rule
+  bool start_is_recorded = false;             ///< the start is that of a recorded path, which needs no clearance
+  double clearance_m = 0.5;                   ///< distance of start and stations from walls and unknown space
+  double half_width_m = 0.3;                  ///< of the robot, which does not fit through narrower passages
+  std::string robot = "wheeled";              ///< robot of the scenario
+  std::optional<double> lidar_height_m = {};  ///< of the lidar of the robot above the ground; none: without a lidar
 };
 
 /// Receives the kind of work that begins, such as "compare scans", and the completed fraction of all work, 0 ... 1.
@@ -49,7 +50,7 @@ struct SiteImportOptions {
 /// Gives a site the mission of the options; without stations it has none. A site without a floor plan gets one
 /// (site_plan.h). Without a start, the mission begins at the first station of the table or at a random place. Throws
 /// InputError if the start or a station is outside the free ground of the plan, has too little clearance, or is not
-/// connected to the start.
+/// connected to the start. A start inside of a solid is refused without a mission, too.
 void add_mission(const MissionOptions& options, ImportedSite& site);
 
 /// Reads a site file of any format but logs (site_format.h) and adds its mission. Throws InputError with one line,

@@ -154,7 +154,7 @@ TEST(ScansSite, IsReadFromAFolderAndCompiles) {
   const ImportedSite site = import_site({.file = folder / "scans", .name = "room"});
   write_site(site, folder / "room");
   EXPECT_TRUE(std::filesystem::exists(folder / "room" / "room.xml"));
-  EXPECT_THAT(report_of(site), testing::HasSubstr("filled in"));
+  EXPECT_THAT(report_of(site, site.assumptions), testing::HasSubstr("filled in"));
 }
 
 TEST(ScansSite, FolderWithoutScansIsRefused) {
