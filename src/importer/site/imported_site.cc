@@ -77,7 +77,7 @@ void write_mission(const ImportedSite& site, const std::filesystem::path& folder
       folder / "scenarios" / "patrol.yaml",
       fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
                   "mission: routes/patrol.json\n{}stack:\n  mission_type: gas  # stations of the mission file\n{}"
-                  "expect:\n  mission.completed: true\n",
+                  "expect:\n  mission.completed: true\n  mission.collisions: {{max: 0}}\n",
                   site.route->stations.size(), io::on_one_line(site.source), yaml_text(site.name),
                   yaml_text(site.robot), site.scenario_keys, site.stack_keys));
 }

@@ -95,7 +95,7 @@ TEST_F(PlanImport, RandomStationsAreAMissionInTheFreeSpaceOfThePlan) {
   }
   const std::string scenario = test::read_bytes(folder_ / "worlds/room/scenarios/patrol.yaml");
   EXPECT_THAT(scenario, HasSubstr("robot: tracked\n"));
-  EXPECT_THAT(scenario, HasSubstr("expect:\n  mission.completed: true\n"));
+  EXPECT_THAT(scenario, HasSubstr("expect:\n  mission.completed: true\n  mission.collisions: {max: 0}\n"));
 }
 
 TEST_F(PlanImport, ATableOfStationsIsAMissionThatEndsAtTheLastOneAndFacesAwayFromTheOneBefore) {
