@@ -108,9 +108,7 @@ bool SourceRobot::moves_whole_robot(const SourceJoint& joint) const {
   return other_kg <= kNegligible * mass_kg;
 }
 
-std::string SourceRobot::location(int line) const {
-  return location_in(file, positions, line);
-}
+std::string SourceRobot::location(int line) const { return location_in(file, positions, line); }
 
 std::string SourceRobot::short_location(int line) const {
   if (positions.empty()) return fmt::format("line {}", line);

@@ -59,8 +59,8 @@ class SdfSource {
   std::string text() const;
 
   const std::filesystem::path& file() const { return file_; }
-  /// Returns "FILE:LINE" of an element that begins in a line of the text, for messages; of an expanded text in the xacro
-  /// file that has the element.
+  /// Returns "FILE:LINE" of an element that begins in a line of the text, for messages; of an expanded text in the
+  /// xacro file that has the element.
   std::string location(int line) const { return location_in(file_.string(), positions_, line); }
   bool is_expanded() const { return !positions_.empty(); }
 
