@@ -1,20 +1,7 @@
 #include "io/points/ply.h"
 
-#include <cmath>
-
-#include "core/error.h"
-#include "tests/fuzz/fuzz_input.h"
+#include "tests/fuzz/point_checks.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using patrol::test::require;
-  const patrol::test::MemoryFile file(data, size);
-  try {
-    const std::vector<patrol::ScannerPoint> points = patrol::io::load_ply(file.path());
-    require(points.size() <= size, "each point takes a byte at least");
-    for (const auto& [x, y, z, intensity] : points) {
-      require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && std::isfinite(intensity),
-              "points are finite");
-    }
-  } catch (const patrol::InputError&) {}
-  return 0;
+  return patrol::test::check_points(data, size, 1, patrol::io::load_ply);
 }
