@@ -12,6 +12,7 @@
 #include "importer/site/points/cloud_patches.h"
 #include "importer/site/points/contact_boxes.h"
 #include "importer/site/points/filled_ground.h"
+#include "importer/site/points/intensity_scale.h"
 #include "importer/site/points/panorama.h"
 #include "importer/site/points/panorama_patches.h"
 #include "importer/site/points/scanned_ground.h"
@@ -24,18 +25,6 @@ namespace {
 /// Reflectivities of the materials of measured surfaces.
 constexpr std::array kReflectivities = {0.04, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.85};
 constexpr double kUnknownReflectivity = 0.5;
-
-/// Linear map from intensities to the light of a surface, reflectivity times cosine of incidence.
-struct IntensityScale {
-  float factor = 0.0f;  ///< 0: the points have no intensity
-  std::string rule;
-};
-
-IntensityScale scale_of(float largest) {
-  if (largest <= 0.0f) return {.factor = 0.0f, .rule = "the points have no intensity: reflectivity 0.5 everywhere"};
-  const float full = largest <= 1.0f ? 1.0f : (largest <= 255.0f ? 255.0f : std::max(largest, 65535.0f));
-  return {.factor = 1.0f / full, .rule = fmt::format("an intensity of {:g} is that of a white surface", full)};
-}
 
 std::size_t class_of(float reflectivity) {
   std::size_t best = 0;
@@ -294,7 +283,7 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
   });
   const IntensityScale scale = scale_of(largest);
   const auto reflectivity = [&](float intensity, double cosine) {
-    if (scale.factor <= 0.0f) return static_cast<float>(kUnknownReflectivity);
+    if (!scale.is_known()) return static_cast<float>(kUnknownReflectivity);
     return std::clamp(scale.factor * intensity / static_cast<float>(cosine), 0.0f, 1.0f);
   };
   progress("find surfaces", 0.6);
@@ -336,14 +325,11 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
   progress("find surfaces", 0.3);
   ImportedSite site{.name = options.name, .source = source};
   transform(cloud.points, unit_of_points(options) * upright(options));
-  float largest = 0.0f;
-  for (const ScannerPoint& point : cloud.points) largest = std::max(largest, point.intensity);
-  const IntensityScale scale = scale_of(largest);
+  const IntensityScale scale = scale_of_cloud(cloud.points);
   CloudPatches found = patches_of_cloud(
       cloud.points,
       [&](float intensity) {
-        return scale.factor <= 0.0f ? static_cast<float>(kUnknownReflectivity)
-                                    : std::clamp(scale.factor * intensity, 0.0f, 1.0f);
+        return scale.is_known() ? scale.light_of(intensity) : static_cast<float>(kUnknownReflectivity);
       },
       error_location(options, source));
   check_points_on_surfaces(cloud, found, error_location(options, source));
