@@ -5,11 +5,11 @@
 namespace patrol::importer::intensity_scale_test {
 namespace {
 
-/// Scale of 1,000 points whose intensities rise evenly from `least` to `most`, with one of `outlier`.
-IntensityScale scale_of_even(float least, float most, float outlier) {
+/// Scale of 1,000 points whose intensities rise evenly from `smallest` to `largest`, with one of `outlier`.
+IntensityScale scale_of_even(float smallest, float largest, float outlier) {
   std::vector<ScannerPoint> points = {{0.0f, 0.0f, 0.0f, outlier}};
   for (int i = 0; i < 1000; ++i)
-    points.push_back({0.0f, 0.0f, 0.0f, least + static_cast<float>(i) / 999.0f * (most - least)});
+    points.push_back({0.0f, 0.0f, 0.0f, smallest + static_cast<float>(i) / 999.0f * (largest - smallest)});
   return scale_of_cloud(points);
 }
 
@@ -30,7 +30,7 @@ TEST(IntensityScale, WithNearlyAllPointsInTheLowerHalfTheBrightestOfThemAreWhite
             "an intensity of 990, which 99 % of the points do not exceed, is that of a white surface");
 }
 
-TEST(IntensityScale, WithNegativeIntensitiesTheLeastOneIsBlack) {
+TEST(IntensityScale, WithNegativeIntensitiesTheSmallestOneIsBlack) {
   const IntensityScale scale = scale_of_even(-2048.0f, 2047.0f, 0.0f);
   EXPECT_EQ(scale.light_of(-2048.0f), 0.0f);
   EXPECT_NEAR(scale.light_of(0.0f), 0.5, 0.01);

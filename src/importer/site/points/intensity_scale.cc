@@ -21,8 +21,8 @@ IntensityScale scale_of_cloud(const std::vector<ScannerPoint>& points) {
   if (points.empty()) return scale_of(0.0f);
   std::vector<float> intensities;
   for (const ScannerPoint& point : points) intensities.push_back(point.intensity);
-  const auto [least, largest] = std::minmax_element(intensities.begin(), intensities.end());
-  const float black = std::min(0.0f, *least);
+  const auto [smallest, largest] = std::minmax_element(intensities.begin(), intensities.end());
+  const float black = std::min(0.0f, *smallest);
   IntensityScale scale = scale_of(*largest - black);
   scale.black = black;
   if (!scale.is_known()) return scale;

@@ -22,8 +22,8 @@ struct IntensityScale {
 IntensityScale scale_of(float largest);
 
 /// Returns the scale of a cloud of any instrument, whose full scale is unknown: if 99 % of the intensities are in the
-/// lower half of the scale by the largest one, the brightest of these are white. With negative intensities, the least
-/// one is black.
+/// lower half of the scale by the largest one, the brightest of these are white. With negative intensities, the
+/// smallest one is black.
 IntensityScale scale_of_cloud(const std::vector<ScannerPoint>& points);
 
 }  // namespace patrol::importer
