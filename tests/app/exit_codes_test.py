@@ -6,6 +6,7 @@ usage: exit_codes_test.py PATROL SOURCE_DIR
 """
 import json
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -65,6 +66,20 @@ class ExitCodes(unittest.TestCase):
         self.assertEqual(list(metrics["map"]), ["origin_in_world"])
         self.assertLess(metrics["pose"]["ate_rmse_m"], 0.1)
         self.assertTrue(metrics["stations"][0]["reached"])
+
+    def test_legs_that_are_far_slower_than_their_walk_are_a_warning(self):
+        urdf = (SOURCE / "models/quadruped/quadruped.urdf").read_text()
+        for name, text in {"fast": urdf, "slow": re.sub(r'velocity="[^"]*"', 'velocity="1.5"', urdf)}.items():
+            with self.subTest(name):
+                shutil.copytree(SOURCE / "models/quadruped", self.path / "models" / name)
+                (self.path / "models" / name / "quadruped.urdf").unlink()
+                (self.path / "models" / name / "quadruped.yaml").rename(self.path / "models" / name / f"{name}.yaml")
+                (self.path / "models" / name / f"{name}.urdf").write_text(text)
+                self.out = self.path / f"run_{name}"
+                done = self.run_patrol(f"robot: {name}\ntime_limit_s: 0.5\n")
+                self.assertEqual(done.returncode, 4, done.stderr)
+                warned = re.search(r"warning: slow: .* needs \d+\.\d times the speed limits of the joints", done.stderr)
+                self.assertEqual(warned is not None, name == "slow", done.stderr)
 
     def test_missed_and_unmeasured_expectations_are_1(self):
         done = self.run_patrol("expect:\n  mission.completed: true\n  mission.distance_m: {min: 1000}\n"

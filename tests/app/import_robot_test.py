@@ -63,6 +63,13 @@ class ImportRobot(unittest.TestCase):
         self.assertIn("Distance", run.stdout)
         self.assertTrue((self.folder / "run/metrics.json").exists())
 
+    def test_a_folder_in_which_no_scenario_finds_the_robot_is_a_warning(self):
+        self.assertEqual(self.patrol("import", "robot", self.urdf, "--out", "models/four").stderr, "")
+        other = self.patrol("import", "robot", self.urdf, "--out", "robots/four/")
+        self.assertEqual(other.returncode, 0)
+        self.assertEqual(other.stderr, "patrol: warning: --out robots/four/: scenarios find four in folders named models only: "
+                         "move it to models/four\n")
+
     def test_a_xacro_file_needs_no_python_but_that_of_the_source_tree(self):
         if not (SOURCE / ".deps/python/bin/python3").exists():
             self.skipTest("tools/setup was not run")

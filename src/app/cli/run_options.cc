@@ -139,7 +139,9 @@ void add_verify(CLI::App& app, Call& call) {
   VerifyOptions& verify = call.verify;
   CLI::App* command = app.add_subcommand("verify", "Repeat a run's simulator and its stack, and compare every byte");
   command->add_option("run", verify.run, "Run directory")->required();
-  command->add_option("--stack", verify.stack, kStackHelp);
+  command->add_option("--stack", verify.stack,
+                      "Command or address of the stack of the second half, which is not started by the scenario of the "
+                      "run (default: the built-in stack, if the run had it)");
   command->callback([&] { call.chosen = [&] { return verify_command(call.verify); }; });
 }
 

@@ -81,6 +81,15 @@ void refuse_known_name(const std::string& robot, const std::filesystem::path& ou
                                out.string(), robot, known.parent_path().string()));
 }
 
+/// Prints a warning if the result is not in a folder `folder`, where scenarios look for it.
+void warn_of_folder(const std::filesystem::path& out, const std::string& folder) {
+  const std::string name = folder_name(out);
+  const std::filesystem::path parent = std::filesystem::weakly_canonical(out / "..");
+  if (parent.filename() == folder) return;
+  fmt::print(stderr, "patrol: warning: --out {}: scenarios find {} in folders named {} only: move it to {}/{}\n",
+             out.string(), name, folder, folder, name);
+}
+
 /// Sets the height of the lidar of a robot, and the space that it needs to turn in place with a margin, and to pass.
 void use_robot(const std::string& name, importer::MissionOptions& mission) {
   constexpr double kMargin_m = 0.1;
@@ -136,6 +145,7 @@ ExitCode import_robot_command(const ImportRobotOptions& options) {
   check_joint_speeds(robot);
   importer::write_robot(robot, options.out);
   print(robot.assumptions, options.out);
+  warn_of_folder(options.out, "models");
   return ExitCode::kDone;
 }
 
@@ -164,6 +174,7 @@ ExitCode import_site_command(const ImportSiteOptions& options) {
     return ExitCode::kProgramFailed;
   }
   print(*assumptions, options.out);
+  warn_of_folder(options.out, "worlds");
   return ExitCode::kDone;
 }
 

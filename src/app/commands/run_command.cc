@@ -20,7 +20,9 @@
 #include "app/scoring/expectations.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
+#include "sim/locomotion/swing_speed.h"
 
 namespace patrol::app {
 namespace {
@@ -212,6 +214,23 @@ void warn_of_late_events(const Scenario& scenario) {
   }
 }
 
+/// Prints a warning if the legs of the robot walked with joints that are far too slow: only the check of a robot
+/// compares joint speeds with their limits.
+void warn_of_slow_joints(const RunOptions& options, const Scenario& scenario) {
+  constexpr double kMaxRatio = 1.5;  // above what gaits are adapted to (sim/locomotion/swing_speed.h)
+  if (!options.from.empty()) return;
+  const std::filesystem::path data_root = find_data_root(named_world(options) ? "" : options.scenario);
+  const RobotDescription robot = io::load_robot_description(find_robot(scenario.robot, data_root).string());
+  if (robot.legs.empty()) return;
+  const double ratio = sim::peak_swing_speed_ratio(robot, scenario.locomotion, scenario.locomotion.max_forward_mps);
+  if (ratio <= kMaxRatio) return;
+  fmt::print(
+      stderr,
+      "patrol: warning: {}: the swing of a walk at {:.2f} m/s needs {:.1f} times the speed limits of the joints, "
+      "which are not simulated: see patrol check {}\n",
+      scenario.robot, scenario.locomotion.max_forward_mps, ratio, scenario.robot);
+}
+
 }  // namespace
 
 ExitCode run_command(const RunOptions& options) {
@@ -234,6 +253,7 @@ ExitCode run_command(const RunOptions& options) {
     return ExitCode::kProgramFailed;
   }
 
+  warn_of_slow_joints(options, scenario);
   const std::string robot = named_world(options) ? scenario.robot + ", " : "";  // which the user may not have named
   const std::string title = fmt::format("{}/{}, {}seed {}", scenario.world, name, robot, scenario.seed);
   print_result(options.form,

@@ -177,7 +177,11 @@ void check_coordinates(const mjModel& model, const std::string& source) {
   const sim::DataPtr data = sim::make_data(model);
   mj_kinematics(&model, data.get());
   for (int geom = 0; geom < model.ngeom; ++geom) {
-    const double max_m = Eigen::Map<const Eigen::Vector3d>(data->geom_xpos + 3 * geom).cwiseAbs().maxCoeff();
+    double max_m = Eigen::Map<const Eigen::Vector3d>(data->geom_xpos + 3 * geom).cwiseAbs().maxCoeff();
+    if (model.geom_type[geom] != mjGEOM_PLANE) {
+      const Eigen::AlignedBox3d box = sim::geom_box(model, *data, geom);
+      max_m = std::max({max_m, box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff()});
+    }
     if (max_m > kMaxCoordinate_m)
       throw InputError(fmt::format("{}: {}: {}", source, geom_text(model, geom), far_text(max_m)));
   }

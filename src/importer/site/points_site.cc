@@ -225,13 +225,16 @@ void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size
 
 /// Refuses coordinates whose floats of 32 bits are too coarse for surfaces.
 void check_precision(const io::RelativePoints& cloud, const std::string& location, double unit_m) {
-  constexpr double kMaxStep_m = 0.02;
-  const double step_m = unit_m * cloud.step;
+  constexpr double kMaxStep_m = 0.02, kMaxOrigin_m = 1e8;
+  const double origin_m = unit_m * cloud.origin.cwiseAbs().maxCoeff(), step_m = unit_m * cloud.step;
+  if (origin_m > kMaxOrigin_m)
+    throw InputError(
+        fmt::format("{}: coordinates up to {:.3g} m: must be at most {:g} m", location, origin_m, kMaxOrigin_m));
   if (step_m <= kMaxStep_m) return;
   throw InputError(
       fmt::format("{}: coordinates up to {:.3g} m in single precision are up to {:.2g} m apart: must be double "
                   "precision, or relative to an origin near the site",
-                  location, unit_m * cloud.origin.cwiseAbs().maxCoeff(), step_m));
+                  location, origin_m, step_m));
 }
 
 /// Refuses a cloud with a few points on surfaces.

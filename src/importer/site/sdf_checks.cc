@@ -209,6 +209,8 @@ class ElementChecker {
       const bool is_scale = child->GetName() == "scale";
       const auto scale = is_scale ? child->Get<ignition::math::Vector3d>() : ignition::math::Vector3d::One;
       if (!(scale.Min() > 0.0) || !scale.IsFinite()) world_.fail(child, "must be three positive numbers");
+      if (is_scale && scale != ignition::math::Vector3d::One && !element->HasElement("pose"))
+        world_.fail(child, "needs the <pose> of the model beside it");
       if (child->GetName() == "model") check_state(child);
     }
   }

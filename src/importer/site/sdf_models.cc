@@ -74,17 +74,17 @@ std::string unknown_model(const std::string& uri) {
 }
 
 std::string unknown_models(const std::vector<std::string>& uris) {
-  if (uris.size() == 1) return unknown_model(uris.front());
   std::vector<std::string> names;
   bool has_network = false;
   for (const std::string& uri : uris) {
-    names.push_back(name_in(uri));
+    if (std::ranges::find(names, name_in(uri)) == names.end()) names.push_back(name_in(uri));
     has_network |= is_of_network(uri);
   }
+  if (names.size() == 1) return unknown_model(uris.front());
   return fmt::format(
       "{} unknown models: \"{}\": {}give the folder of each with --package NAME=FOLDER, or the folder "
       "above them in {}",
-      uris.size(), fmt::join(names, "\", \""), has_network ? "download those of a network, and " : "",
+      names.size(), fmt::join(names, "\", \""), has_network ? "download those of a network, and " : "",
       fmt::join(kFolderVariables, " or "));
 }
 

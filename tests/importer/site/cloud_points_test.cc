@@ -110,6 +110,11 @@ TEST(CloudSite, CoordinatesOfMillionsOfMetersInSinglePrecisionAreRefused) {
                   "room.pcd: coordinates up to 5.41e+06 m in single precision are up to 0.65 m apart")));
 }
 
+TEST(CloudSite, CoordinatesBeyond100000KilometersAreRefused) {
+  EXPECT_THAT(complaint_about("room.ply", ply_text(room_cloud(), {1e15, 0.0, 0.0})),
+              testing::HasSubstr("room.ply: coordinates up to 1e+15 m: must be at most 1e+08 m"));
+}
+
 TEST(CloudSite, ACloudOfAFewPointsIsRefused) {
   std::vector<ScannerPoint> points;
   for (int i = 0; i < 64; ++i) points.push_back({0.3f * float(i % 8), 0.3f * float(i / 8), 0.0f, 0.0f});

@@ -83,6 +83,8 @@ TEST(CompiledSite, GeomsFartherThan100kmAreRefusedByName) {
   EXPECT_THAT([&] { check_coordinates(*far, "room.world"); },
               ::testing::ThrowsMessage<InputError>("room.world: wall: coordinates up to 5.41e+06 m: must be at most "
                                                    "100000 m: move the origin of the file near the site"));
+  const sim::ModelPtr large = model_of(R"(<geom name="wall" type="box" size="1 1 1e9"/>)");
+  EXPECT_THROW(check_coordinates(*large, "room.world"), InputError);
 }
 
 }  // namespace

@@ -173,6 +173,9 @@ TEST(SdfSite, ModelsThatAreNotFoundAreNamedTogether) {
       import.error(),
       "a.sdf:3: <include>: 2 unknown models: \"one\", \"Two B\": download those of a network, and give the folder "
       "of each with --package NAME=FOLDER, or the folder above them in GAZEBO_MODEL_PATH or GZ_SIM_RESOURCE_PATH");
+  const std::string same =
+      SiteFileImport("a.sdf", world(include("one") + "\n<include><uri>model://one/</uri></include>")).error();
+  EXPECT_THAT(same, ::testing::StartsWith("a.sdf:3: <include>: unknown model \"one\""));
 }
 
 TEST(SdfSite, ModelsOfGazeboClassicAreFoundBelowTheHomeFolder) {

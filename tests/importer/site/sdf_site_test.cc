@@ -325,6 +325,8 @@ TEST(SdfSite, BrokenAndUnsupportedWorldsAreRefusedByOneLine) {
             "a.sdf:3: <polyline>: must be a polygon without self-intersection"},
            {shaped(kBox) + "<state world_name='w'><model name='m'><scale>2 0 1</scale></model></state>",
             "a.sdf:3: <scale>: must be three positive numbers"},
+           {shaped(kBox) + "<state world_name='w'><model name='m'><scale>1 1 2</scale></model></state>",
+            "a.sdf:3: <scale>: needs the <pose> of the model beside it"},
            {"<state world_name='w'><insertions/></state>",
             "a.sdf:3: <insertions>: insertions of a state are not supported: write the models out"},
            {"", "a.sdf: the world has no geometry"},

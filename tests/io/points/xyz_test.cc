@@ -53,11 +53,13 @@ TEST(Xyz, ALineOfNamesSaysWhichColumnIsWhich) {
   }
 }
 
-TEST(Xyz, CommentsBlankLinesAndTheCountOfPtsAreIgnored) {
+TEST(Xyz, CommentsBlankLinesAndByteOrderMarksAreIgnored) {
   const std::vector<ScannerPoint> expected = {{1, 2, 3, 0}, {4, 5, 6, 0}};
   expect_same(load("2\r\n1 2 3\r\n4 5 6\r\n").points, expected);
   expect_same(load("# x y z of the yard, in m; by hand\n\n1;2;3\n// rest\n4;5;6").points, expected);
   expect_same(load("  1,\t2, 3\n 4,5 ,6 \n\n").points, expected);
+  expect_same(load("1, 2, 3\n4, 5, 6\n").points, expected);
+  expect_same(load("\xEF\xBB\xBFx,y,z\n1,2,3\n4,5,6\n").points, expected);
   EXPECT_TRUE(load("").points.empty());
   EXPECT_TRUE(load("# nothing\n").points.empty());
 }
@@ -79,7 +81,16 @@ TEST(Xyz, InvalidLinesAreRefused) {
   EXPECT_EQ(complaint_about("1 2\n"), "c.xyz:1: must be 3 to 100 numbers");
   EXPECT_EQ(complaint_about("x y z\n1 2 3 4\n"), "c.xyz:2: must be 3 numbers");
   EXPECT_EQ(complaint_about("easting,northing,height\n1,2,3\n"), "c.xyz:1: names no columns x, y and z");
-  EXPECT_EQ(complaint_about("1,5;2,5;3\n"), "c.xyz:1: has semicolons and commas: decimals must have a point");
+  for (const char* line : {"1,5;2,5;3", "1,5 2,5 3", "1,5\t2\t3,25", "1,5 2,5 3,5 "})
+    EXPECT_EQ(complaint_about(std::string(line) + "\n"),
+              "c.xyz:1: has commas in its numbers: decimals must have a point");
+  EXPECT_EQ(complaint_about("3\n1 2 3\n4 5 6\n"), "c.xyz: has 2 points, and 3 by its first line");
+  EXPECT_EQ(complaint_about("1\n1 2 3\n4 5 6\n"), "c.xyz: has 2 points, and 1 by its first line");
+  EXPECT_EQ(complaint_about("-5\n1 2 3\n"), "c.xyz:1: must be the number of points, or 3 numbers or more");
+  EXPECT_EQ(complaint_about(std::string("\xFF\xFE"
+                                        "1\0",
+                                        4)),
+            "c.xyz: is encoded as UTF-16: must be UTF-8");
 }
 
 }  // namespace
