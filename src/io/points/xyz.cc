@@ -106,7 +106,7 @@ std::array<double, 4> read_point(const FileText& text, std::string_view line, co
   text.refuse(fmt::format("must be {} numbers", columns.count));
 }
 
-/// Lines before the second point.
+/// First lines of a file, up to the first point.
 struct XyzStart {
   XyzColumns columns;
   bool is_named = false;                       ///< a line names the columns
