@@ -10,7 +10,7 @@
 
 namespace patrol::importer {
 
-/// Throws InputError with the source and the geom if the position of a geom is beyond `kMaxCoordinate_m`.
+/// Throws InputError with the source and the geom if a geom reaches beyond `kMaxCoordinate_m`.
 void check_coordinates(const mjModel& model, const std::string& source);
 
 /// Returns rows about the compiled model of a site. "no ground": neither a plane nor a height field has contact, and no
