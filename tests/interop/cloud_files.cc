@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "io/points/e57.h"
 #include "io/points/pcd.h"
 #include "io/points/ply.h"
 
@@ -31,7 +32,9 @@ int main(int argc, char** argv) {
     return 0;
   }
   try {
-    const auto points = path.extension() == ".ply" ? patrol::io::load_ply(path) : patrol::io::load_pcd(path);
+    const auto points = path.extension() == ".ply"   ? patrol::io::load_ply(path)
+                        : path.extension() == ".e57" ? patrol::io::joined_points(patrol::io::load_e57(path)).points
+                                                     : patrol::io::load_pcd(path);
     for (const auto& [x, y, z, intensity] : points) std::printf("%.9g %.9g %.9g %.9g\n", x, y, z, intensity);
   } catch (const patrol::InputError& error) {
     std::fprintf(stderr, "%s\n", error.what());

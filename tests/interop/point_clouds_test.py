@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""plyfile and pypcd4 read our point clouds, and we read theirs, to the last bit.
+"""plyfile and pypcd4 read our point clouds, and we read theirs and scans of libE57Format, to the last bit.
 
 usage: point_clouds_test.py CLOUD_FILES
 """
@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 import numpy as np
+import pye57
 from plyfile import PlyData, PlyElement
 from pypcd4 import Encoding, PointCloud
 
@@ -60,6 +61,39 @@ class PointClouds(unittest.TestCase):
             file = self.folder / "theirs.pcd"
             cloud.save(file, encoding=encoding)
             np.testing.assert_allclose(self.read(file), SAMPLE, rtol=0 if encoding == Encoding.BINARY else 1e-5)
+
+    def test_we_read_scans_that_libe57format_writes(self):
+        file = self.folder / "theirs.e57"
+        scans = pye57.E57(str(file), mode="w")
+        scans.write_scan_raw({"cartesianX": SAMPLE[:, 0], "cartesianY": SAMPLE[:, 1], "cartesianZ": SAMPLE[:, 2],
+                              "intensity": SAMPLE[:, 3]}, translation=np.array([0.0, 0.0, 0.0]))
+        scans.close()
+        np.testing.assert_array_equal(self.read(file), SAMPLE)
+
+    def test_we_read_scaled_angles_that_libe57format_packs_into_bits(self):
+        file, count = self.folder / "packed.e57", 30000  # several packets
+        limits = {"sphericalRange": (0, 29999, 1e-3), "sphericalAzimuth": (-3000, 3000, 1e-3),
+                  "sphericalElevation": (-1000, 1500, 1e-3)}
+        image = pye57.libe57.ImageFile(str(file), "w")
+        prototype, buffers, raw = pye57.libe57.StructureNode(image), pye57.libe57.VectorSourceDestBuffer(), []
+        for i, (name, (low, high, scale)) in enumerate(limits.items()):
+            raw.append((low + np.arange(count) * (7919 + i) % (high - low + 1)).astype(np.int16))
+            prototype.set(name, pye57.libe57.ScaledIntegerNode(image, low, low, high, scale, 0.0))
+            buffers.append(pye57.libe57.SourceDestBuffer(image, name, raw[-1], count, True, False))
+        points = pye57.libe57.CompressedVectorNode(image, prototype, pye57.libe57.VectorNode(image, True))
+        scan = pye57.libe57.StructureNode(image)
+        scan.set("points", points)
+        scans = pye57.libe57.VectorNode(image, True)
+        image.root().set("data3D", scans)
+        scans.append(scan)
+        writer = points.writer(buffers)
+        writer.write(count)
+        writer.close()
+        image.close()
+        r, azimuth, elevation = (scale * values for values, (_, _, scale) in zip(raw, limits.values()))
+        level = r * np.cos(elevation)
+        wanted = np.stack([level * np.cos(azimuth), level * np.sin(azimuth), r * np.sin(elevation)], axis=1)
+        np.testing.assert_allclose(self.read(file)[:, :3], wanted, atol=1e-5)
 
 
 if __name__ == "__main__":

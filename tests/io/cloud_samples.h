@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -8,10 +7,13 @@
 
 #include "core/error.h"
 #include "core/sensors/registry.h"
+#include "tests/support/number_bytes.h"
 #include "tests/support/temporary_file.h"
 
 /// Point clouds and complaints, for the tests of PLY and PCD.
 namespace patrol::io {
+
+using test::bytes;
 
 inline const std::vector<ScannerPoint> kThreePoints = {
     {1.5F, -2.25F, 0.125F, 200.0F}, {0.1F, 1e-7F, -70.0F, 0.0F}, {3e5F, -1.0F, 1.0F, 255.0F}};
@@ -24,14 +26,6 @@ inline void expect_same(const std::vector<ScannerPoint>& a, const std::vector<Sc
     EXPECT_EQ(a[i].z, b[i].z) << i;
     EXPECT_EQ(a[i].intensity, b[i].intensity) << i;
   }
-}
-
-/// The number's bytes, little-endian.
-template <typename Number>
-std::string bytes(Number number) {
-  std::string raw(sizeof(number), '\0');
-  std::memcpy(raw.data(), &number, sizeof(number));
-  return raw;
 }
 
 /// What `load` says of a file with this content, without its folder.

@@ -16,8 +16,10 @@
 #include "importer/site/points/panorama.h"
 #include "importer/site/points/panorama_patches.h"
 #include "importer/site/points/scanned_ground.h"
+#include "importer/site/points/sorted_scans.h"
 #include "importer/site/points/static_points.h"
 #include "importer/site/points/thin_objects.h"
+#include "io/points/e57.h"
 
 namespace patrol::importer {
 namespace {
@@ -51,16 +53,6 @@ Eigen::Matrix3d upright(const SiteImportOptions& options) {
   Eigen::Matrix3d R;
   R << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   return R;
-}
-
-void transform(std::vector<ScannerPoint>& points, const Eigen::Matrix3d& A) {
-  if (A.isIdentity()) return;
-  for (ScannerPoint& point : points) {
-    const Eigen::Vector3f p = (A * Eigen::Vector3f(point.x, point.y, point.z).cast<double>()).cast<float>();
-    point.x = p.x();
-    point.y = p.y();
-    point.z = p.z();
-  }
 }
 
 void append(Mesh& mesh, const Patch& patch) {
@@ -220,13 +212,14 @@ void add_frame_rows(ImportedSite& site, const Eigen::Vector3d& origin, std::size
   }
   if (num_dropped > 0)
     site.assumptions.push_back(
-        {"invalid points", fmt::format("{} points are not finite, noise or withheld: left out", num_dropped), ""});
+        {"invalid points", fmt::format("{} points are not finite, invalid, noise or withheld: left out", num_dropped),
+         ""});
 }
 
 /// Refuses coordinates whose floats of 32 bits are too coarse for surfaces.
-void check_precision(const io::RelativePoints& cloud, const std::string& location, double unit_m) {
+void check_precision(const Eigen::Vector3d& origin, double step, const std::string& location, double unit_m) {
   constexpr double kMaxStep_m = 0.02, kMaxOrigin_m = 1e8;
-  const double origin_m = unit_m * cloud.origin.cwiseAbs().maxCoeff(), step_m = unit_m * cloud.step;
+  const double origin_m = unit_m * origin.cwiseAbs().maxCoeff(), step_m = unit_m * step;
   if (origin_m > kMaxOrigin_m)
     throw InputError(
         fmt::format("{}: coordinates up to {:.3g} m: must be at most {:g} m", location, origin_m, kMaxOrigin_m));
@@ -247,44 +240,25 @@ void check_points_on_surfaces(const io::RelativePoints& cloud, const CloudPatche
   }
 }
 
-}  // namespace
-
-ImportedSite read_scans_site(const SiteImportOptions& options) {
-  progress_of(options)("read scans", 0.0);
-  return site_of_scans(io::load_relative_scans(options.file, unit_of_points(options)), options.file.filename().string(),
-                       options);
+SortedScans sorted_scans(std::vector<io::StationScan>& scans, const SiteImportOptions& options) {
+  const auto progress = progress_of(options);
+  const auto num_scans = static_cast<double>(scans.size());
+  return sort_scans(scans, upright(options), unit_of_points(options), [&](std::size_t i) {
+    progress(fmt::format("sort scan {}", i + 1), 0.15 + 0.1 * static_cast<double>(i) / num_scans);
+  });
 }
 
-ImportedSite read_cloud_site(const SiteImportOptions& options) {
-  progress_of(options)("read points", 0.0);
-  return site_of_cloud(io::load_points(options.file, {}, unit_of_points(options)), options.file.filename().string(),
-                       options);
-}
-
-ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options) {
-  if (scans.scans.empty()) throw InputError(error_location(options, source) + ": has no scans");
+/// Returns the site of sorted scans, whose panoramas are changed.
+ImportedSite site_of_panoramas(SortedScans& scans, const Eigen::Vector3d& origin, std::size_t num_dropped,
+                               const std::string& source, const SiteImportOptions& options) {
   const auto progress = progress_of(options);
   ImportedSite site{.name = options.name, .source = source};
-  const Eigen::Matrix3d R = upright(options), A = unit_of_points(options) * R;
-  float largest = 0.0f;
-  std::vector<Panorama> panoramas;
-  for (io::StationScan& scan : scans.scans) {
-    progress(fmt::format("sort scan {}", panoramas.size() + 1),
-             0.15 + 0.1 * static_cast<double>(panoramas.size()) / static_cast<double>(scans.scans.size()));
-    transform(scan.points, A);
-    scan.T_map_scanner.position = A * scan.T_map_scanner.position;
-    // The frame of the scanner stays upright.
-    scan.T_map_scanner.rotation = quaternion_from_yaw(
-        to_yaw(Eigen::Quaterniond(R * scan.T_map_scanner.rotation.toRotationMatrix() * R.transpose())));
-    for (const ScannerPoint& point : scan.points) largest = std::max(largest, point.intensity);
-    panoramas.emplace_back(scan);
-    scan.points = {};
-  }
-  const double num_scans = static_cast<double>(scans.scans.size());
+  std::vector<Panorama>& panoramas = scans.panoramas;
+  const auto num_scans = static_cast<double>(panoramas.size());
   const StaticPointCounts counts = find_static_points(panoramas, [&](std::size_t i) {
     progress(fmt::format("compare scan {} with the others", i + 1), 0.25 + 0.35 * static_cast<double>(i) / num_scans);
   });
-  const IntensityScale scale = scale_of(largest);
+  const IntensityScale scale = scale_of(scans.max_intensity);
   const auto reflectivity = [&](float intensity, double cosine) {
     if (!scale.is_known()) return static_cast<float>(kUnknownReflectivity);
     return std::clamp(scale.factor * intensity / static_cast<float>(cosine), 0.0f, 1.0f);
@@ -297,7 +271,7 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
     scanners_m.push_back(panorama.origin());
   }
   const double step_deg = to_deg(panoramas.front().step_rad());
-  add_frame_rows(site, scans.origin, scans.num_dropped, options);
+  add_frame_rows(site, origin, num_dropped, options);
   site.assumptions.push_back({"points",
                               fmt::format("{} of {} scans; the first has a step of {:.3f} degrees", counts.num_points,
                                           scanners_m.size(), step_deg),
@@ -322,9 +296,46 @@ ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, c
   return site;
 }
 
+}  // namespace
+
+ImportedSite read_scans_site(const SiteImportOptions& options) {
+  progress_of(options)("read scans", 0.0);
+  const std::string source = options.file.filename().string(), location = options.file.string();
+  const double unit_m = unit_of_points(options);
+  if (std::filesystem::is_directory(options.file))
+    return site_of_scans(io::load_relative_scans(options.file, unit_m), source, options);
+  io::E57Scans file = io::load_e57(options.file, unit_m);
+  if (file.scans.scans.empty()) throw InputError(location + ": has no points");
+  check_precision(file.scans.origin, file.step, location, unit_m);
+  std::string reason = "a scan has no pose";
+  if (file.has_scanners) {
+    SortedScans sorted = sorted_scans(file.scans.scans, options);
+    if (sorted.problem.empty())
+      return site_of_panoramas(sorted, file.scans.origin, file.scans.num_dropped, source, options);
+    reason = sorted.problem;
+    file = io::load_e57(options.file, unit_m);
+  }
+  ImportedSite site = site_of_cloud(io::joined_points(std::move(file)), source, options);
+  site.assumptions.push_back({"scanner positions", "not used: " + reason, ""});
+  return site;
+}
+
+ImportedSite read_cloud_site(const SiteImportOptions& options) {
+  progress_of(options)("read points", 0.0);
+  return site_of_cloud(io::load_points(options.file, {}, unit_of_points(options)), options.file.filename().string(),
+                       options);
+}
+
+ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options) {
+  if (scans.scans.empty()) throw InputError(error_location(options, source) + ": has no scans");
+  SortedScans sorted = sorted_scans(scans.scans, options);
+  if (!sorted.problem.empty()) throw InputError(fmt::format("{}: {}", error_location(options, source), sorted.problem));
+  return site_of_panoramas(sorted, scans.origin, scans.num_dropped, source, options);
+}
+
 ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, const SiteImportOptions& options) {
   const auto progress = progress_of(options);
-  check_precision(cloud, error_location(options, source), unit_of_points(options));
+  check_precision(cloud.origin, cloud.step, error_location(options, source), unit_of_points(options));
   progress("find surfaces", 0.3);
   ImportedSite site{.name = options.name, .source = source};
   transform(cloud.points, unit_of_points(options) * upright(options));
@@ -347,7 +358,7 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
                    2 * found.num_outliers > cloud.points.size() ? ": more than half of the cloud" : ""),
        ""});
   site.assumptions.push_back(
-      {"moving objects", "remain: the file has no scanner positions, so that no point can be looked through", ""});
+      {"moving objects", "remain: without scanner positions, no point can be looked through", ""});
   site.assumptions.push_back(
       {"normals", "surfaces face the nearest place where a person can stand, 1.5 m above the ground", ""});
   site.assumptions.push_back({"reflectivity", scale.rule + ", at any incidence", ""});

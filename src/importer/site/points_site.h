@@ -8,9 +8,10 @@
 
 namespace patrol::importer {
 
-/// Reads a folder of panoramic scans (io/points/station_scans.h) and reconstructs the surfaces: each scan as an image
-/// of ranges, without outliers and moving objects, and without surfaces that another scan measured with closer beams.
-/// Throws InputError if the folder is invalid or has no surface.
+/// Reads panoramic scans of a folder (io/points/station_scans.h) or an E57 file and reconstructs the surfaces: each
+/// scan as an image of ranges, without outliers and moving objects, and without surfaces that another scan measured
+/// with closer beams. An E57 file whose points were not seen from the poses of its scans is a point cloud. Throws
+/// InputError if the input is invalid or has no surface.
 ImportedSite read_scans_site(const SiteImportOptions& options);
 
 /// Reads a point cloud without scanner positions, PLY or PCD, and reconstructs the surfaces by an octree of planes.

@@ -28,7 +28,7 @@ constexpr std::array kExtensions = std::to_array<ExtensionFormat>({
     {".xml", SiteFormat::kMjcf},  {".ply", SiteFormat::kMesh},  {".pcd", SiteFormat::kCloud},
     {".las", SiteFormat::kCloud}, {".laz", SiteFormat::kCloud}, {".xyz", SiteFormat::kCloud},
     {".pts", SiteFormat::kCloud}, {".asc", SiteFormat::kCloud}, {".csv", SiteFormat::kCloud},
-    {".txt", SiteFormat::kCloud},
+    {".txt", SiteFormat::kCloud}, {".e57", SiteFormat::kScans},
 });
 
 /// Option and the formats that use it.

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 
 #include <Eigen/Core>
@@ -10,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/points/file_text.h"
+#include "io/points/little_endian.h"
 #include "io/points/point_collector.h"
 
 namespace patrol::io {
@@ -29,39 +29,31 @@ struct LasHeader {
   Eigen::Array3d scale, offset;
 };
 
-/// Returns the little-endian number at a byte; the caller checks the size.
-template <typename Number>
-Number las_number(std::string_view bytes, std::size_t begin) {
-  Number number;
-  std::memcpy(&number, bytes.data() + begin, sizeof number);
-  return number;
-}
-
 LasHeader read_las_header(const FileText& text) {
   const std::string_view bytes = text.rest();
   const auto refuse = [&](const std::string& reason) { throw InputError(fmt::format("{}: {}", text.file(), reason)); };
   if (bytes.size() < kMinHeaderBytes || bytes.substr(0, 4) != "LASF") refuse("is not a LAS file");
-  const int major = las_number<std::uint8_t>(bytes, 24), minor = las_number<std::uint8_t>(bytes, 25);
+  const int major = little_endian<std::uint8_t>(bytes, 24), minor = little_endian<std::uint8_t>(bytes, 25);
   if (major != 1 || minor > 4)
     refuse(fmt::format("LAS version {}.{} is not supported (known: 1.0 to 1.4)", major, minor));
-  const auto format = las_number<std::uint8_t>(bytes, 104);
+  const auto format = little_endian<std::uint8_t>(bytes, 104);
   if ((format & kCompressedFormat) != 0)
     refuse("LAZ, which is compressed, is not supported: convert to LAS, for example with pdal translate");
   if (format >= kPointBytes.size()) refuse(fmt::format("point format {} is not supported (known: 0 to 10)", format));
-  LasHeader header{.begin = las_number<std::uint32_t>(bytes, 96),
+  LasHeader header{.begin = little_endian<std::uint32_t>(bytes, 96),
                    .format = format,
-                   .point_bytes = las_number<std::uint16_t>(bytes, 105),
-                   .num_points = las_number<std::uint32_t>(bytes, 107),
+                   .point_bytes = little_endian<std::uint16_t>(bytes, 105),
+                   .num_points = little_endian<std::uint32_t>(bytes, 107),
                    .scale = {},
                    .offset = {}};
   if (minor == 4) {
     if (bytes.size() < kMinHeaderBytes14) refuse("the header is incomplete");
-    header.num_points = las_number<std::uint64_t>(bytes, 247);
+    header.num_points = little_endian<std::uint64_t>(bytes, 247);
   }
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t at = 8 * static_cast<std::size_t>(axis);
-    header.scale[axis] = las_number<double>(bytes, 131 + at);
-    header.offset[axis] = las_number<double>(bytes, 155 + at);
+    header.scale[axis] = little_endian<double>(bytes, 131 + at);
+    header.offset[axis] = little_endian<double>(bytes, 155 + at);
   }
   if (!header.offset.isFinite().all() || !(header.scale.isFinite() && header.scale > 0.0).all())
     refuse("scales must be positive and offsets finite");
@@ -75,9 +67,9 @@ LasHeader read_las_header(const FileText& text) {
 /// Returns whether a point is withheld or noise.
 bool is_left_out(std::string_view point, int format) {
   constexpr int kLowNoise = 7, kHighNoise = 18, kWithheldOfFlags = 0x04, kWithheldOfClass = 0x80, kClassBits = 0x1F;
-  const int flags = las_number<std::uint8_t>(point, 15);
+  const int flags = little_endian<std::uint8_t>(point, 15);
   const bool is_extended = format >= kFirstExtendedFormat;
-  const int class_of_point = is_extended ? las_number<std::uint8_t>(point, 16) : flags & kClassBits;
+  const int class_of_point = is_extended ? little_endian<std::uint8_t>(point, 16) : flags & kClassBits;
   const bool is_withheld = (flags & (is_extended ? kWithheldOfFlags : kWithheldOfClass)) != 0;
   return is_withheld || class_of_point == kLowNoise || class_of_point == kHighNoise;
 }
@@ -95,10 +87,10 @@ std::vector<ScannerPoint> load_shifted_las(const std::filesystem::path& file, Po
       ++shift.num_dropped;
       continue;
     }
-    const Eigen::Array3d counts(las_number<std::int32_t>(point, 0), las_number<std::int32_t>(point, 4),
-                                las_number<std::int32_t>(point, 8));
+    const Eigen::Array3d counts(little_endian<std::int32_t>(point, 0), little_endian<std::int32_t>(point, 4),
+                                little_endian<std::int32_t>(point, 8));
     const Eigen::Array3d position = header.scale * counts + header.offset;
-    const double intensity = las_number<std::uint16_t>(point, 12);
+    const double intensity = little_endian<std::uint16_t>(point, 12);
     if (!points.add({position.x(), position.y(), position.z(), intensity}))
       throw InputError(fmt::format("{}: point {} is not finite", file.string(), i + 1));
   }

@@ -130,7 +130,7 @@ TEST(CloudSite, PointsThatAreNotFiniteAreLeftOut) {
   points[2000].y = std::numeric_limits<float>::infinity();
   io::save_pcd(folder / "room.pcd", points);
   const ImportedSite site = import_site({.file = folder / "room.pcd", .name = "room"});
-  EXPECT_EQ(assumption(site, "invalid points"), "3 points are not finite, noise or withheld: left out");
+  EXPECT_EQ(assumption(site, "invalid points"), "3 points are not finite, invalid, noise or withheld: left out");
 }
 
 TEST(CloudSite, ScaleAndUpAxisApply) {
@@ -152,7 +152,8 @@ TEST(CloudSite, BrokenFilesAreRefusedInOneLine) {
               testing::HasSubstr("the points form no surface"));
   EXPECT_THAT(complaint_about("text.pcd", "hello\n"), testing::HasSubstr("is not a line of a PCD header"));
   EXPECT_THAT(complaint_about("cloud.las", "LASF"), testing::HasSubstr("cloud.las: is not a LAS file"));
-  EXPECT_THAT(complaint_about("cloud.e57", "ASTM"), testing::HasSubstr("extension of a site file must be one of"));
+  EXPECT_THAT(complaint_about("cloud.e57", "ASTM"), testing::HasSubstr("cloud.e57: is not an E57 file"));
+  EXPECT_THAT(complaint_about("cloud.dwg", "AC10"), testing::HasSubstr("extension of a site file must be one of"));
 }
 
 }  // namespace

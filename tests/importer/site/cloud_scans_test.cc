@@ -6,6 +6,7 @@
 #include "importer/site/points_site.h"
 #include "importer/site/site_mjcf.h"
 #include "tests/importer/site/scanned_room.h"
+#include "tests/io/e57_writer.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::importer {
@@ -157,6 +158,77 @@ TEST(ScansSite, IsReadFromAFolderAndCompiles) {
   EXPECT_THAT(report_of(site, site.assumptions), testing::HasSubstr("filled in"));
 }
 
+/// Returns an E57 file of scans, each in the frame of its scanner; or, `is_joined`, of one scan with all points in
+/// site.
+std::string e57_of(const std::vector<io::StationScan>& scans, bool is_joined = false) {
+  test::E57Writer writer;
+  test::E57TestScan element;
+  element.fields = test::e57_floats({"cartesianX", "cartesianY", "cartesianZ", "intensity"});
+  element.packet_records = 4000;
+  element.pose = test::e57_pose(0.0, 0.0, 0.0, 0.0);
+  for (const io::StationScan& scan : scans) {
+    const Eigen::Vector3d& origin = scan.T_map_scanner.position;
+    if (!is_joined) element.pose = test::e57_pose(origin.x(), origin.y(), origin.z(), 0.0);
+    for (const ScannerPoint& point : scan.points) {
+      const Eigen::Vector3d p =
+          Eigen::Vector3f(point.x, point.y, point.z).cast<double>() - (is_joined ? 0.0 : 1.0) * origin;
+      element.records.push_back({p.x(), p.y(), p.z(), point.intensity});
+    }
+    if (!is_joined) {
+      writer.add(element);
+      element.records.clear();
+    }
+  }
+  if (is_joined) writer.add(element);
+  return writer.file();
+}
+
+TEST(ScansSite, E57HasTheSurfacesOfTheFolderWithTheSameScans) {
+  const test::TemporaryFolder folder;
+  ScannedRoom with;
+  with.objects = {kCabinet};
+  // The person stands in one scan.
+  ScannedRoom busy = with;
+  busy.objects.push_back({Eigen::Vector3d(1.0, -1.5, 0.0), Eigen::Vector3d(1.4, -1.2, 1.8)});
+  const std::vector<io::StationScan> scans = {with.scan("a", kWest), busy.scan("b", kEast), with.scan("c", kNorth)};
+  io::save_station_scans(folder / "scans", scans);
+  test::write_bytes(folder / "scans.e57", e57_of(scans));
+  const ImportedSite of_folder = import_site({.file = folder / "scans", .name = "room"});
+  const ImportedSite of_e57 = import_site({.file = folder / "scans.e57", .name = "room"});
+  EXPECT_EQ(assumption(of_e57, "points"), "450000 of 3 scans; the first has a step of 0.600 degrees");
+  const Eigen::AlignedBox3d all(Eigen::Vector3d(-9.0, -9.0, -9.0), Eigen::Vector3d(9.0, 9.0, 9.0));
+  EXPECT_NEAR(area_in(of_e57, all, false), area_in(of_folder, all, false), 0.5);
+  const Eigen::AlignedBox3d person(Eigen::Vector3d(0.98, -1.52, 0.05), Eigen::Vector3d(1.42, -1.18, 1.82));
+  EXPECT_LT(area_in(of_e57, person, false), 0.01);
+}
+
+TEST(ScansSite, PointsOfAnE57FileThatWereNotSeenFromItsPoseAreACloud) {
+  const test::TemporaryFolder folder;
+  ScannedRoom with;
+  with.objects = {kCabinet};
+  test::write_bytes(folder / "room.e57", e57_of({with.scan("a", kWest, 1.2), with.scan("b", kEast, 1.2)}, true));
+  const ImportedSite site = import_site({.file = folder / "room.e57", .name = "room"});
+  EXPECT_THAT(
+      assumption(site, "scanner positions"),
+      testing::MatchesRegex("not used: [0-9]+ % of the points of scan_1 are behind others, as seen from its pose"));
+  EXPECT_THAT(assumption(site, "moving objects"), testing::HasSubstr("remain"));
+}
+
+TEST(ScansSite, FolderWithAWrongScannerPositionIsRefused) {
+  ScannedRoom with;
+  with.objects = {kCabinet};
+  io::RelativeScans scans;
+  scans.scans = {with.scan("gate", kWest)};
+  scans.scans[0].T_map_scanner.position = {12.0, 5.0, 1.0};
+  try {
+    site_of_scans(std::move(scans), "scans", {.file = "scans", .name = "room"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::MatchesRegex(
+                                  "scans: [0-9]+ % of the points of gate are behind others, as seen from its pose"));
+  }
+}
+
 TEST(ScansSite, FolderWithoutScansIsRefused) {
   const test::TemporaryFolder folder;
   io::save_station_scans(folder / "scans", {});
@@ -182,6 +254,15 @@ TEST(Panorama, FindsTheStepOfTheScannerInAnyOrder) {
   for (std::size_t i = scan.points.size() - 1; i > 0; --i)
     std::swap(scan.points[i], scan.points[static_cast<std::size_t>(draw.uniform(i) * static_cast<double>(i + 1))]);
   EXPECT_EQ(Panorama(scan).columns(), 600);
+}
+
+TEST(Panorama, PointsAreHiddenIfTheScannerWasElsewhere) {
+  ScannedRoom with;
+  with.objects = {kCabinet};
+  io::StationScan scan = with.scan("a", kWest);
+  EXPECT_LT(Panorama(scan).hidden_part(), 0.001);
+  scan.T_map_scanner.position.x() += 10.0;
+  EXPECT_GT(Panorama(scan).hidden_part(), 0.06);
 }
 
 TEST(Panorama, SurfaceContinuesOnASlopeAndEndsAtAJump) {

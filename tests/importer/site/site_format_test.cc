@@ -21,6 +21,7 @@ TEST(SiteFormat, FollowsTheExtensionInAnyCase) {
   EXPECT_EQ(site_format("hall.world.xacro"), SiteFormat::kSdf);
   const test::TemporaryFolder folder;
   EXPECT_EQ(site_format(folder.path()), SiteFormat::kScans);
+  EXPECT_EQ(site_format("hall.E57"), SiteFormat::kScans);
 }
 
 TEST(SiteFormat, UnknownExtensionsAreRefusedWithThoseOfLogsAndFoldersOfScans) {

@@ -144,6 +144,8 @@ void Panorama::fill_pixels(const io::StationScan& scan) {
   intensity_.assign(size, 0.0f);
   state_.assign(size, 0);
   std::vector<float> distance(size, std::numeric_limits<float>::max());
+  constexpr double kSameRange = 0.05;
+  std::size_t num_hidden = 0;
   for (const ScannerPoint& point : scan.points) {
     const Eigen::Vector3d p = Eigen::Vector3f(point.x, point.y, point.z).cast<double>();
     const std::optional<Pixel> pixel = pixel_of(p);
@@ -151,12 +153,14 @@ void Panorama::fill_pixels(const io::StationScan& scan) {
     if (!pixel || range < 1e-3) continue;
     const auto off = static_cast<float>((p - (origin() + range * direction(*pixel))).norm() / range);
     const std::size_t at = index(*pixel);
+    if (range_m_[at] > 0.0f && std::abs(double{range_m_[at]} / range - 1.0) > kSameRange) ++num_hidden;
     if (off >= distance[at]) continue;
     distance[at] = off;
     range_m_[at] = static_cast<float>(range);
     intensity_[at] = point.intensity;
     max_range_m_ = std::max(max_range_m_, range);
   }
+  hidden_part_ = static_cast<double>(num_hidden) / static_cast<double>(scan.points.size());
 }
 
 Eigen::Vector3d Panorama::direction(double col, double row) const {

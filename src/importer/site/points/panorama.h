@@ -42,6 +42,9 @@ class Panorama {
   const Eigen::Vector3d& origin() const { return T_site_scanner_.position; }
   /// Returns the largest range of a return.
   double max_range_m() const { return max_range_m_; }
+  /// Returns the part of the points that share a pixel with a point at another range: near 0 if the scanner was at the
+  /// pose of the scan, since a beam has one return.
+  double hidden_part() const { return hidden_part_; }
 
   /// Returns the range, m; 0 if the pixel has no return.
   float range_m(Pixel pixel) const { return range_m_[index(pixel)]; }
@@ -96,6 +99,7 @@ class Panorama {
   int columns_ = 0, rows_ = 0;
   double step_rad_ = 0.0;
   double max_range_m_ = 0.0;
+  double hidden_part_ = 0.0;
   double azimuth_rad_ = 0.0;    ///< azimuth of column 0
   double elevation_rad_ = 0.0;  ///< elevation of row 0
   std::vector<float> range_m_, intensity_;
