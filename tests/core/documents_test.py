@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Links and images of every Markdown document lead to files and headings that exist; the top README stays short.
+"""Links and images of every Markdown document lead to files and headings that exist, and comments of the source to
+files; the top README stays short.
 
 usage: documents_test.py SOURCE_DIR
 """
@@ -12,6 +13,7 @@ import unittest
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 MAX_README_LINES = 150
+SYSTEM_HEADERS = {"sysexits.h"}
 
 
 def documents(root):
@@ -51,12 +53,30 @@ def broken_links(root):
     return broken
 
 
+def broken_references(root):
+    """One line for each file of C++ that a comment of the source names and that does not exist."""
+    files = [file.relative_to(root).as_posix() for folder in ("src", "tests") for file in (root / folder).rglob("*.*")]
+    broken = []
+    for name in files:
+        if not name.startswith("src/") or not name.endswith((".h", ".cc")):
+            continue
+        for number, line in enumerate((root / name).read_text().splitlines(), 1):
+            comment = re.search(r"//(.*)", line)
+            for reference in re.findall(r"\b[\w/]+\.(?:h|cc)\b", comment[1] if comment else ""):
+                if reference not in SYSTEM_HEADERS and not any(f"/{file}".endswith(f"/{reference}") for file in files):
+                    broken.append(f"{name}:{number}: {reference}: no such file")
+    return broken
+
+
 class Documents(unittest.TestCase):
     def setUp(self):
         self.root = pathlib.Path(SOURCE_DIR).resolve()
 
     def test_every_link_leads_to_a_file_and_heading(self):
         self.assertEqual(broken_links(self.root), [])
+
+    def test_comments_name_files_that_exist(self):
+        self.assertEqual(broken_references(self.root), [])
 
     def test_documents_were_found(self):
         self.assertGreater(len(documents(self.root)), 8)
@@ -81,6 +101,13 @@ class PlantedFaults(unittest.TestCase):
 
     def test_a_missing_heading_is_found(self):
         self.assertEqual(self.broken("[a](there.md#gone)\n"), ["page.md: there.md#gone: no such heading"])
+
+    def test_a_comment_that_names_a_missing_file_is_found(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder).resolve()
+            (root / "src/core").mkdir(parents=True)
+            (root / "src/core/time.h").write_text("int a = 0;  ///< see core/time.h and core/tide.h\n#include <a.h>\n")
+            self.assertEqual(broken_references(root), ["src/core/time.h:1: core/tide.h: no such file"])
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@
 namespace patrol::app {
 namespace {
 
-/// Input with the scans of one half of the log. The site is that of `input`.
+/// Returns the scans of one half of the log.
 std::vector<realism::PosedScan> half_of(const RealismInput& input, bool is_second) {
   const std::vector<realism::PosedScan>& scans = input.scans.scans;
   const auto middle = scans.begin() + static_cast<std::ptrdiff_t>(scans.size() / 2);

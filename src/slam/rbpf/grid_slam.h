@@ -35,7 +35,7 @@ namespace patrol::slam {
 ///
 /// With `proposal: motion` it is FastSLAM on grids, the baseline of [Wu25] and [Cui21]: particles are sampled from
 /// odometry and weighted by the scan. An optimizer may move them in between; ISCSO and IFA use the resamplers of their
-/// sources (grid_step.h).
+/// sources (particle_filter_components.h).
 class GridSlam {
  public:
   /// Throws InputError if a setting is invalid. `T_map_start` is the pose of the first scan.

@@ -20,7 +20,7 @@ namespace patrol::slam {
 ///
 ///   every scan     track it (scan_tracker.h); the particles of the open submap start from there (submap_builder.h)
 ///   submap full    its best particle becomes the submap and the filter restarts; compare the submap with nearby older
-///                  ones, connect recognized neighbors by constraints (submap_joiner.h) and optimize the submap graph,
+///                  ones, connect recognized neighbors by constraints (submap_constraint_finder.h) and optimize the submap graph,
 ///                  with a robust kernel on the constraints
 ///   finish         render the scans of all submaps at their poses
 ///
