@@ -6,22 +6,11 @@
 
 #include "core/frames.h"
 #include "core/geometry/segment.h"
-#include "score/distance_field.h"
+#include "score/map_error.h"
 #include "score/statistics.h"
 
 namespace patrol::score {
 namespace {
-
-std::vector<Eigen::Vector2d> occupied_centers(const OccupancyGrid& map) {
-  const Grid<std::uint8_t> is_occupied = occupied_cells(map);
-  std::vector<Eigen::Vector2d> centers;
-  for (int row = 0; row < map.geometry().height; ++row) {
-    for (int col = 0; col < map.geometry().width; ++col) {
-      if (is_occupied.at({col, row}) != 0) centers.push_back(map.geometry().center_of({col, row}));
-    }
-  }
-  return centers;
-}
 
 /// Distance from a point to the outline, 0 inside it.
 double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& outline) {
@@ -81,7 +70,7 @@ DrivenClearance driven_clearance(const Trajectory& T_world_body, const std::vect
                                  double spacing_m) {
   if (T_world_body.empty() || footprint_m.size() < 3) return {};
   const std::vector<double> clearances =
-      clearances_m(T_world_body, footprint_m, occupied_centers(map_in_world), spacing_m);
+      clearances_m(T_world_body, footprint_m, occupied_points(map_in_world), spacing_m);
   DrivenClearance score{.mean_m = mean(clearances),
                         .p05_m = percentile(clearances, 0.05),
                         .min_m = *std::min_element(clearances.begin(), clearances.end()),

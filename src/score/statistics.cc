@@ -72,11 +72,6 @@ double percentile(std::vector<double> values, double fraction) {
   return values[below] + (rank - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-double confidence_95(const std::vector<double>& values) {
-  const std::optional<Interval> interval = mean_interval(values);
-  return interval ? interval->center - interval->low : 0.0;
-}
-
 std::optional<Interval> mean_interval(const std::vector<double>& values, double level) {
   if (values.size() < 2) return std::nullopt;
   const double center = mean(values);

@@ -15,9 +15,6 @@ double maximum(const std::vector<double>& values);
 /// Percentile with linear interpolation [Hyndman96, type 7]; `fraction` in 0 ... 1.
 double percentile(std::vector<double> values, double fraction);
 
-/// Half width of the 95 % confidence interval of the mean by Student's t, 0 for fewer than two values.
-double confidence_95(const std::vector<double>& values);
-
 struct Interval {
   double center = 0.0;
   double low = 0.0;

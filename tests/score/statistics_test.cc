@@ -26,7 +26,7 @@ TEST(Statistics, OfNothingAreZero) {
   EXPECT_EQ(root_mean_square({}), 0.0);
   EXPECT_EQ(maximum({}), 0.0);
   EXPECT_EQ(percentile({}, 0.5), 0.0);
-  EXPECT_EQ(confidence_95({7.0}), 0.0);
+  EXPECT_FALSE(mean_interval({7.0}));
 }
 
 // Hyndman and Fan's type 7, as R's default.
@@ -40,19 +40,24 @@ TEST(Percentile, IsLinearBetweenNeighbours) {
   EXPECT_EQ(percentile({9.0}, 0.95), 9.0);
 }
 
+double half_width(const std::vector<double>& values) {
+  const Interval interval = mean_interval(values).value();
+  return interval.high - interval.center;
+}
+
 /// Half width over the standard error: the quantile of Student's t itself.
 double quantile_used(int count) {
   std::vector<double> values(static_cast<std::size_t>(count));
   std::iota(values.begin(), values.end(), 0.0);
-  return confidence_95(values) / std::sqrt(variance(values) / count);
+  return half_width(values) / std::sqrt(variance(values) / count);
 }
 
-TEST(Confidence95, OfOneToFiveIsOnePointNineSix) {
-  EXPECT_NEAR(confidence_95({1.0, 2.0, 3.0, 4.0, 5.0}), 2.7764 * std::sqrt(2.5 / 5.0), 1e-4);  // 1.9632
+TEST(MeanInterval, OfOneToFiveIsOnePointNineSix) {
+  EXPECT_NEAR(half_width({1.0, 2.0, 3.0, 4.0, 5.0}), 2.7764 * std::sqrt(2.5 / 5.0), 1e-4);  // 1.9632
 }
 
 // Quantiles as tables of the distribution give them.
-TEST(Confidence95, UsesStudentsQuantiles) {
+TEST(MeanInterval, UsesStudentsQuantiles) {
   EXPECT_NEAR(quantile_used(2), 12.7062, 1e-4);
   EXPECT_NEAR(quantile_used(10), 2.2622, 1e-4);
   EXPECT_NEAR(quantile_used(31), 2.0423, 1e-4);

@@ -5,6 +5,7 @@
 #include "app/common/process_cost.h"
 #include "app/common/temporary_folder.h"
 #include "app/study/scan_world.h"
+#include "app/study/site_comparison.h"
 #include "importer/site/site_import.h"
 
 namespace patrol::app {

@@ -6,7 +6,7 @@
 
 #include "app/common/process_cost.h"
 #include "app/common/temporary_folder.h"
-#include "app/study/log_mapper.h"
+#include "app/study/pipeline_mapper.h"
 #include "app/study/study_run.h"
 #include "score/map_error.h"
 #include "score/pose/trajectory_error.h"
@@ -74,7 +74,7 @@ Mapped map_by(const GridMethod& method, const StudyRun& patrol) {
   settings.slam.rbpf.filter.optimizer = method.optimizer;
   settings.slam.rbpf.filter.particles = method.particles;
   const double before_mb = heap_mb();
-  LogMapper mapper(settings, patrol.files.robot, patrol.scenario.seed);
+  PipelineMapper mapper(settings, patrol.files.robot, patrol.scenario.seed);
   mapper.map(patrol.log);
   return {.T_map_body = mapper.T_map_body(),
           .map = mapper.map(),

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/common/temporary_folder.h"
-#include "app/study/log_mapping.h"
+#include "app/study/mapped_run.h"
 #include "app/study/study_run.h"
 #include "report/boxes.h"
 #include "score/map_error.h"

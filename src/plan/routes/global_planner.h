@@ -43,8 +43,8 @@ struct PlanResult {
   std::int64_t num_expanded = 0;
 };
 
-/// Plans a path between two positions on the costmap by one of the planners (plan/routes/planners.h), and smooths it. The
-/// path connects the exact positions through the centers of their cells.
+/// Plans a path between two positions on the costmap by one of the planners (plan/routes/planners.h), and smooths it.
+/// The path connects the exact positions through the centers of their cells.
 class GlobalPlanner {
  public:
   /// Throws InputError like make_route_planner, and for `visibility_graph`, whose paths touch lethal cells.

@@ -20,8 +20,8 @@ namespace patrol::slam {
 ///
 ///   every scan     track it (scan_tracker.h); the particles of the open submap start from there (submap_builder.h)
 ///   submap full    its best particle becomes the submap and the filter restarts; compare the submap with nearby older
-///                  ones, connect recognized neighbors by constraints (submap_constraint_finder.h) and optimize the submap graph,
-///                  with a robust kernel on the constraints
+///                  ones, connect recognized neighbors by constraints (submap_constraint_finder.h) and optimize the
+///                  submap graph, with a robust kernel on the constraints
 ///   finish         render the scans of all submaps at their poses
 ///
 /// Deviation from [Yu23]: submaps are compared when they are full, not at the end of the loop, so that the next one is

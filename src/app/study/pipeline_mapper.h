@@ -11,9 +11,9 @@ namespace patrol::app {
 
 /// Map and poses that the stack's pose pipeline computes from a recorded log, with other settings than those of the
 /// run. They have no influence on the robot.
-class LogMapper {
+class PipelineMapper {
  public:
-  LogMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed);
+  PipelineMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed);
 
   /// Processes a log. Throws InputError if it is damaged or yields no map.
   void map(const std::filesystem::path& log_mcap);

@@ -1,4 +1,4 @@
-#include "app/study/log_mapper.h"
+#include "app/study/pipeline_mapper.h"
 
 #include <fmt/format.h>
 
@@ -16,10 +16,10 @@ stack::StackSettings without_delay(stack::StackSettings settings) {
 
 }  // namespace
 
-LogMapper::LogMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed)
+PipelineMapper::PipelineMapper(const stack::StackSettings& settings, const RobotDescription& robot, std::uint64_t seed)
     : pipeline_(without_delay(settings), robot, {}, {}, seed) {}
 
-void LogMapper::map(const std::filesystem::path& log_mcap) {
+void PipelineMapper::map(const std::filesystem::path& log_mcap) {
   io::LogHandlers handlers;
   handlers.on<Imu>([&](Time, const Imu& imu) { pipeline_.add(imu, output_); });
   handlers.on<JointState>([&](Time, const JointState& constraints) { pipeline_.add(constraints, output_); });
@@ -30,7 +30,7 @@ void LogMapper::map(const std::filesystem::path& log_mcap) {
   if (T_map_body_.empty()) throw InputError(fmt::format("{}: no scan could be mapped", log_mcap.string()));
 }
 
-void LogMapper::handle(const LaserScan& raw) {
+void PipelineMapper::handle(const LaserScan& raw) {
   pipeline_.update_odometry();
   const std::optional<LevelScan> scan = pipeline_.level(raw, output_);
   if (!scan) return;

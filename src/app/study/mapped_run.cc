@@ -1,4 +1,4 @@
-#include "app/study/log_mapping.h"
+#include "app/study/mapped_run.h"
 
 #include <algorithm>
 #include <memory>
