@@ -62,7 +62,7 @@ TourSettings tour_of(const RunOptions& options, const Scenario* scenario, const 
   if (!options.start.empty()) {
     tour.start = parse_pose(options.start, "--start", {});
   } else if (scenario != nullptr) {
-    const Pose2 start = load_scenario_files(*scenario, data_root).T_site_start;
+    const Pose2 start = load_start(*scenario, data_root);
     tour.start = {.x_m = start.x, .y_m = start.y, .heading_deg = to_deg(start.yaw)};
   } else {
     throw InputError("--goal: a run in a world needs --start X,Y[,DEG]");

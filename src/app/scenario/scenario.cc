@@ -195,6 +195,16 @@ void load_mission(const Scenario& scenario, ScenarioFiles& files) {
   files.datum = route.datum;
 }
 
+/// Loads the mission of a scenario and no other file of it.
+ScenarioFiles load_mission_alone(const Scenario& scenario, const std::filesystem::path& data_root) {
+  return with_location(scenario, [&] {
+    ScenarioFiles files;
+    files.world_xml = load_site(scenario.world, data_root).world_xml;
+    load_mission(scenario, files);
+    return files;
+  });
+}
+
 /// Checks that the simulated receiver measures relative to the datum of the survey.
 void check_datum(const Scenario& scenario, const ScenarioFiles& files) {
   const GnssSettings& gnss = scenario.sensors.gnss;
@@ -368,12 +378,11 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
 }
 
 Route load_route(const Scenario& scenario, const std::filesystem::path& data_root) {
-  ScenarioFiles files;
-  with_location(scenario, [&] {
-    files.world_xml = load_site(scenario.world, data_root).world_xml;
-    load_mission(scenario, files);
-  });
-  return files.route;
+  return load_mission_alone(scenario, data_root).route;
+}
+
+Pose2 load_start(const Scenario& scenario, const std::filesystem::path& data_root) {
+  return load_mission_alone(scenario, data_root).T_site_start;
 }
 
 ScenarioFiles load_scenario_files(const Scenario& scenario, const std::filesystem::path& data_root) {

@@ -260,6 +260,10 @@ std::vector<std::filesystem::path> named_files(const Scenario& scenario, const s
 /// Loads the stations of a scenario's mission, in site. Throws InputError as `load_scenario_files`.
 Route load_route(const Scenario& scenario, const std::filesystem::path& data_root);
 
+/// Loads the surveyed start of a scenario's mission, in site, and checks nothing else: the robot may lack sensors that
+/// the mission needs. Throws InputError as `load_scenario_files`.
+Pose2 load_start(const Scenario& scenario, const std::filesystem::path& data_root);
+
 /// Path of the registration of a map to the site, which need not exist.
 std::filesystem::path registration_beside(const std::filesystem::path& map_yaml);
 

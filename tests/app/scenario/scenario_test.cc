@@ -250,6 +250,17 @@ TEST(ScenarioFiles, ADatumOfGnssThatIsNotThatOfTheSurveyIsRefused) {
   EXPECT_NO_THROW(load({"sensors.gnss.datum_latitude_deg=48", "sensors.gnss.enabled=false"}));
 }
 
+TEST(Scenario, ItsStartIsReadWithoutTheSensorsThatItsMissionNeeds) {
+  const Scenario scenario = load_scenario(kSource / "worlds/street/scenarios/patrol.yaml", {"robot=wheeled"});
+  EXPECT_THAT([&] { load_scenario_files(scenario, kSource); }, ThrowsMessage<InputError>(HasSubstr("has no tdlas")));
+  const Pose2 start = load_start(scenario, kSource);
+  const Pose2 of_files =
+      load_scenario_files(load_scenario(kSource / "worlds/street/scenarios/patrol.yaml"), kSource).T_site_start;
+  EXPECT_EQ(start.position(), of_files.position());
+  EXPECT_EQ(start.yaw, of_files.yaw);
+  EXPECT_THAT([&] { load_start({}, kSource); }, ThrowsMessage<InputError>(HasSubstr("world: missing")));
+}
+
 TEST(Scenario, AnOverrideOfAnUnknownKeyNamesTheNearest) {
   EXPECT_THAT([] { load_scenario(kSource / "worlds/street/scenarios/short.yaml", {"sed=3"}); },
               ThrowsMessage<InputError>(AllOf(HasSubstr("sed"), HasSubstr("seed"))));
