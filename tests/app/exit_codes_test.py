@@ -126,6 +126,22 @@ class ExitCodes(unittest.TestCase):
                 self.assertEqual((self.out / "log.mcap").read_bytes()[-8:], b"\x89MCAP0\r\n", "the log has its footer")
                 shutil.rmtree(self.out)
 
+    def test_goals_instead_of_the_mission_of_a_scenario(self):
+        for scenario, robot, removed in (("street/short", "quadruped", "mission.distance_m, stations.valve_well_0.site_map_error_m"),
+                                         ("street/patrol", "wheeled", "inspection.")):
+            with self.subTest(scenario):
+                self.out = self.path / robot
+                done = subprocess.run([PATROL, "run", scenario, "--robot", robot, "--goal", "3,0", "--set", "time_limit_s=0.5", "--set",
+                                       "expect.stations.goal_1.reached=true", "--out", self.out],
+                                      capture_output=True, text=True, timeout=120, cwd=SOURCE)
+                self.assertEqual(done.returncode, 4, done.stderr)
+                self.assertIn("patrol: --goal: removed the expectations of the replaced mission: ", done.stderr)
+                self.assertIn(removed, done.stderr)
+                kept = (self.out / "scenario.yaml").read_text()
+                self.assertIn("stations.goal_1.reached", kept)
+                self.assertIn("map.coverage", kept)
+                self.assertNotIn("site_map_error_m", kept)
+
     def test_a_second_run_into_the_same_directory_is_2_and_a_killed_one_does_not_block(self):
         run = self.start_long_run()
         done = self.run_patrol("time_limit_s: 0.1\n")

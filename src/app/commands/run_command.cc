@@ -20,6 +20,7 @@
 #include "app/scoring/expectations.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
+#include "core/text.h"
 #include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
 #include "sim/locomotion/swing_speed.h"
@@ -78,6 +79,14 @@ TourSettings tour_of(const RunOptions& options, const Scenario* scenario, const 
   return tour;
 }
 
+/// Removes the expectations of the mission that the goals replace, and names them.
+void drop_expectations_of_mission(const RunOptions& options, Scenario& scenario) {
+  const std::vector<std::string> dropped = drop_mission_expectations(options.overrides, scenario.expect);
+  if (dropped.empty()) return;
+  fmt::print(stderr, "patrol: --goal: removed {} of the replaced mission: {}\n",
+             dropped.size() == 1 ? "the expectation" : "the expectations", join(dropped, ", "));
+}
+
 /// Scenario of a branch: that of the other run with the overrides.
 Scenario branch_scenario(const RunOptions& options) {
   for (const auto& [option, is_given] :
@@ -111,6 +120,7 @@ Scenario scenario_of(const RunOptions& options) {
     overrides.insert(overrides.end(), tour.begin(), tour.end());
   }
   Scenario scenario = load_scenario(file, overrides);
+  if (!options.goals.empty()) drop_expectations_of_mission(options, scenario);
   check_expected_metrics(scenario, {file.string(), overrides});
   if (options.stack) scenario.stack.command = *options.stack;
   return scenario;

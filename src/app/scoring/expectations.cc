@@ -141,6 +141,30 @@ std::vector<std::string> parameters_of(const Route& route) {
   return names;
 }
 
+/// Metrics whose values depend on the mission or on the survey in its file.
+constexpr std::array<std::string_view, 10> kMissionMetrics = {"stations.*",
+                                                              "goals.*",
+                                                              "docking.*",
+                                                              "inspection.*",
+                                                              "course.*",
+                                                              "range_pose.*",
+                                                              "calibration.uwb.anchor_*",
+                                                              "navigation.clearance.keep_out_min_m",
+                                                              "mission.distance_m",
+                                                              "mission.duration_s"};
+
+bool is_of_mission(const std::string& metric) {
+  return std::ranges::any_of(kMissionMetrics,
+                             [&](std::string_view pattern) { return matches_metric(pattern, metric); });
+}
+
+/// Returns whether an override sets the expectation of a metric, or all of them.
+bool is_set(const std::string& metric, const std::vector<std::string>& overrides) {
+  const std::string own = "expect." + metric + "=";
+  return std::ranges::any_of(
+      overrides, [&](const std::string& one) { return one.starts_with(own) || one.starts_with("expect="); });
+}
+
 /// Returns whether `text` is an index into a list.
 bool is_index(const std::string& text, std::size_t size) {
   std::size_t index = 0;
@@ -215,6 +239,19 @@ void check_expected_metrics(const Scenario& scenario, const io::SettingsSource& 
     if (is_of_parameter) check_name(location, "parameter", name, parameters_of(*route));
     else if (!is_index(name, route->stations.size())) check_name(location, "station", name, stations_of(*route));
   }
+}
+
+std::vector<std::string> drop_mission_expectations(const std::vector<std::string>& overrides,
+                                                   io::Expectations& expectations) {
+  std::vector<std::string> dropped;
+  std::erase_if(expectations, [&](const auto& entry) {
+    const std::string& metric = entry.first;
+    const bool is_known = find_metric_info(metric).has_value();  // others are refused by check_expected_metrics
+    const bool is_dropped = is_known && is_of_mission(metric) && !is_set(metric, overrides);
+    if (is_dropped) dropped.push_back(metric);
+    return is_dropped;
+  });
+  return dropped;
 }
 
 bool all_met(const std::vector<CheckedExpectation>& checks) {

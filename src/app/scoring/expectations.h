@@ -41,6 +41,12 @@ bool has_empty_map(const io::Metrics& metrics);
 /// false of a metric with numbers, with the place of the expectation. `source`: file and overrides of the scenario.
 void check_expected_metrics(const Scenario& scenario, const io::SettingsSource& source);
 
+/// Removes the expectations of a mission that goals of the command line replace: of its stations, goals, docking,
+/// inspection and optimal time, its length, and what only its survey has (anchors, keep-out lines). Keeps those that
+/// `overrides` set, which concern the goals. Returns the removed metrics.
+std::vector<std::string> drop_mission_expectations(const std::vector<std::string>& overrides,
+                                                   io::Expectations& expectations);
+
 bool all_met(const std::vector<CheckedExpectation>& checks);
 
 }  // namespace patrol::app

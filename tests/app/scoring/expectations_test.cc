@@ -203,6 +203,37 @@ TEST(Expectations, MetricsOfAnOlderRunDoNotSayWhatWasPublished) {
   EXPECT_EQ(check("map.coverage", at_least(0.5)).got, "not measured");
 }
 
+TEST(ExpectedMetrics, GoalsRemoveTheExpectationsOfTheMissionButNotThoseOfOverrides) {
+  io::Expectations expectations = {{"mission.completed", boolean(true)},
+                                   {"mission.distance_m", at_least(10.0)},
+                                   {"stations.box.reached", boolean(true)},
+                                   {"stations.goal_1.reached", boolean(true)},
+                                   {"stations.box.misspelled", at_most(1.0)},
+                                   {"inspection.leaks_found", at_least(1.0)},
+                                   {"calibration.uwb.anchor_2.delay_m.holds", boolean(true)},
+                                   {"calibration.lidar.yaw_rad.holds", boolean(true)},
+                                   {"map.coverage", at_least(0.5)}};
+  EXPECT_THAT(drop_mission_expectations({"seed=1", "expect.stations.goal_1.reached=true"}, expectations),
+              testing::ElementsAre("calibration.uwb.anchor_2.delay_m.holds", "inspection.leaks_found",
+                                   "mission.distance_m", "stations.box.reached"));
+  std::vector<std::string> kept;
+  for (const auto& [metric, expectation] : expectations) kept.push_back(metric);
+  EXPECT_THAT(kept, testing::ElementsAre("calibration.lidar.yaw_rad.holds", "map.coverage", "mission.completed",
+                                         "stations.box.misspelled", "stations.goal_1.reached"));
+}
+
+TEST(ExpectedMetrics, EveryShippedScenarioRunsToGoalsInsteadOfItsMission) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot / "worlds")) {
+    if (entry.path().extension() != ".yaml" || entry.path().parent_path().filename() != "scenarios") continue;
+    Scenario scenario = load_scenario(entry.path());
+    scenario.mission.clear();
+    scenario.tour.stations = {{.name = "goal_1"}};
+    drop_mission_expectations({}, scenario.expect);
+    EXPECT_NO_THROW(check_expected_metrics(scenario, {entry.path().string(), {}})) << entry.path();
+    EXPECT_TRUE(scenario.expect.contains("mission.completed")) << entry.path();
+  }
+}
+
 TEST(ExpectedMetrics, AllExpectationsOfTheShippedScenariosAreKnown) {
   int num_checked = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot / "worlds")) {
