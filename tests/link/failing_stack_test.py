@@ -147,6 +147,11 @@ class FailingStack(unittest.TestCase):
         self.assert_verdict(out, done, 3, "the stack failed at 1.000 s: ZeroDivisionError: division by zero")
         self.assertIn("Traceback", (out / "stack.log").read_text())
 
+    def test_a_built_in_stack_on_a_full_disk(self):
+        full = "import os, resource\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"  # Python ignores SIGXFSZ
+        out, done = self.run_stack(full + f"os.execv({stack_runs.PATROL!r}, ['patrol', 'stack'])")
+        self.assert_verdict(out, done, 3, "documents.yaml: cannot be written: File too large")
+
     def test_bytes_that_are_no_records(self):
         for data, reason in ((b"HTTP/1.1 200 OK\r\n", "does not begin with the magic of MCAP"),
                              (b"\x89MCAP0\r\n\x05" + b"\xff" * 8, "record of 18446744073709551615 bytes"),

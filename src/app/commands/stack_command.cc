@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "app/run/built_in_stack.h"
 #include "app/run/make_stack_port.h"
 #include "app/scenario/data_folders.h"
+#include "io/files/atomic_file.h"
 #include "link/stack_client.h"
 
 namespace patrol::app {
@@ -34,7 +34,7 @@ std::unique_ptr<StackPort> stack_for(link::StackClient& client) {
     return std::make_unique<MappingStack>(mapping_settings_of(hello), mounts_of(client.documents()));
   const TemporaryFolder folder("stack");
   const std::filesystem::path file = folder.path() / "documents.yaml";
-  std::ofstream(file) << hello.documents;
+  io::save_text(file, hello.documents);
   Scenario scenario = load_scenario(file);
   scenario.stack.command.clear();  // the built-in stack needs its sensors in this process as well
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
