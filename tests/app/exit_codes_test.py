@@ -164,6 +164,17 @@ class ExitCodes(unittest.TestCase):
                 self.assertEqual(done.returncode, 3, done.stderr)
                 self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
 
+    def test_interrupted_courses_are_3_with_one_line(self):
+        generate = subprocess.Popen([PATROL, "generate", "courses", "--count", "10000", "--out", self.path / "worlds"],
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=SOURCE)
+        deadline = time.monotonic() + 60
+        while generate.poll() is None and not list(self.path.glob("worlds/course_*")) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        generate.send_signal(signal.SIGINT)
+        printed, said = generate.communicate(timeout=60)
+        self.assertEqual((generate.returncode, printed), (3, ""), said)
+        self.assertRegex(said, r"\Apatrol: interrupted; [1-9][0-9]* of 10000 courses written\n\Z")
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], "-v"])

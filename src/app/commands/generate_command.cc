@@ -22,20 +22,32 @@ importer::CourseSettings settings_for(const std::string& robot) {
           .max_speed_mps = scenario.stack.navigation.local_planner.dwa.max_speed_mps};
 }
 
+/// Writes courses until the user interrupts. Returns how many were written.
+int write_courses(const GenerateOptions& options, const importer::CourseSettings& settings,
+                  const InterruptGuard& guard) {
+  ProgressBar bar;
+  int num_written = 0;
+  while (num_written < options.count && !guard.is_interrupted()) {
+    const std::uint64_t number = options.number + static_cast<std::uint64_t>(num_written);
+    const std::string name = fmt::format("course_{:03}", number);
+    importer::write_site(site_of_course(importer::draw_course(number, settings), settings, name, options.robot),
+                         options.out / name);
+    ++num_written;
+    bar.show(fmt::format("{} of {} courses", num_written, options.count),
+             static_cast<double>(num_written) / options.count);
+  }
+  return num_written;
+}
+
 }  // namespace
 
 ExitCode generate_command(const GenerateOptions& options) {
   const importer::CourseSettings settings = settings_for(options.robot);
   const InterruptGuard guard;
-  ProgressBar bar;
-  for (int i = 0; i < options.count && !guard.is_interrupted(); ++i) {
-    const std::uint64_t number = options.number + static_cast<std::uint64_t>(i);
-    const std::string name = fmt::format("course_{:03}", number);
-    importer::write_site(site_of_course(importer::draw_course(number, settings), settings, name, options.robot),
-                         options.out / name);
-    bar.show(fmt::format("{} of {} courses", i + 1, options.count), (i + 1.0) / options.count);
+  if (const int num_written = write_courses(options, settings, guard); num_written < options.count) {
+    fmt::print(stderr, "patrol: interrupted; {} of {} courses written\n", num_written, options.count);
+    return ExitCode::kProgramFailed;
   }
-  if (guard.is_interrupted()) return ExitCode::kProgramFailed;
   fmt::print("{} courses for {}: sizes of the benchmark times {:.2f}, maximum speed {:g} m/s; {}\n", options.count,
              options.robot, settings.scale, settings.max_speed_mps, options.out.string());
   return ExitCode::kDone;

@@ -9,6 +9,7 @@
 
 #include "core/geometry/angles.h"
 #include "core/map_cells.h"
+#include "io/files/one_line.h"
 
 namespace patrol::app {
 namespace {
@@ -154,10 +155,9 @@ std::string render_run_view(const RunView& run, int columns, int rows) {
     const std::size_t at = first + static_cast<std::size_t>(i);
     if (at < run.events.size()) {
       const Event& event = run.events[at];
-      std::string line =
+      const std::string line =
           fmt::format("{:7.1f} s  {}", to_seconds(event.stamp), event.text.empty() ? kind_text(event) : event.text);
-      if (line.size() > static_cast<std::size_t>(columns)) line.resize(static_cast<std::size_t>(columns));
-      text += line;
+      text += io::first_bytes(line, static_cast<std::size_t>(columns));
     }
     text += kLineEnd;
   }

@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/files/one_line.h"
+
 namespace patrol::app::watch_frame_test {
 namespace {
 
@@ -69,6 +71,18 @@ TEST(WatchFrame, TheNewestEventsStay) {
   }
   EXPECT_THAT(render_run_view(run, kColumns, kRows), HasSubstr("fifth"));
   EXPECT_THAT(render_run_view(run, kColumns, kRows), Not(HasSubstr("first")));
+}
+
+TEST(WatchFrame, TheTextOfAnEventIsCutBetweenTwoCharacters) {
+  std::string umlauts;
+  for (int i = 0; i < 100; ++i) umlauts += "ä";
+  RunView run = in_a_field();
+  run.events = {{.stamp = {}, .kind = EventKind::kGasAlarm, .subject = "", .text = umlauts, .T_map_body = {}}};
+  for (const int columns : {kColumns, kColumns + 1}) {
+    const std::string frame = render_run_view(run, columns, kRows);
+    EXPECT_THAT(frame, HasSubstr("ää"));
+    EXPECT_TRUE(io::is_utf8(frame));
+  }
 }
 
 TEST(WatchFrame, ATinyTerminalIsNoReasonToFail) { EXPECT_FALSE(render_run_view(in_a_field(), 1, 1).empty()); }
