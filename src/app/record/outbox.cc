@@ -12,6 +12,7 @@
 
 #include "core/error.h"
 #include "io/files/atomic_file.h"
+#include "io/files/output_error.h"
 
 namespace patrol::app {
 namespace {
@@ -90,7 +91,15 @@ void Outbox::mark_sent(const Batch& batch) {
 }
 
 void Outbox::set_aside(const std::string& result) {
-  std::ofstream(refused_file(root_), std::ios::binary | std::ios::app) << result << "\n";
+  const std::filesystem::path file = refused_file(root_);
+  std::error_code ignored;
+  const std::uintmax_t size = std::filesystem::exists(file, ignored) ? std::filesystem::file_size(file, ignored) : 0;
+  std::ofstream out(file, std::ios::binary | std::ios::app);
+  out << result << "\n" << std::flush;
+  if (out) return;
+  out.close();
+  std::filesystem::resize_file(file, size, ignored);
+  throw io::OutputError(fmt::format("{}: cannot be written", file.string()));
 }
 
 std::size_t Outbox::num_pending() const { return num_pending_results(root_); }

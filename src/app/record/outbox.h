@@ -35,6 +35,8 @@ class Outbox {
   /// Empty if all were sent.
   Batch next(std::size_t max_results, std::size_t max_bytes);
   void mark_sent(const Batch& batch);
+  /// Appends a result that the server rejects to `outbox.refused.jsonl`. Throws OutputError if the disk is full,
+  /// without a part of the result in the file.
   void set_aside(const std::string& result);
 
   std::size_t num_pending() const;

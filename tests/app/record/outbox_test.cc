@@ -7,7 +7,9 @@
 
 #include "app/record/run_directory.h"
 #include "core/error.h"
+#include "io/files/output_error.h"
 #include "tests/monitor/sample_results.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_file.h"
 
 namespace patrol::app::outbox_test {
@@ -72,6 +74,18 @@ TEST(Outbox, AHalfWrittenLastLineIsLeftOut) {
   again.mark_sent(batch);
   EXPECT_TRUE(again.next(10, 100'000).results.empty());
   EXPECT_EQ(again.num_pending(), 0U);
+}
+
+TEST(Outbox, AResultThatCannotBeSetAsideIsAnErrorAndLeavesNoPart) {
+  const TemporaryFolder folder;
+  Outbox outbox(folder.path());
+  outbox.set_aside("{}");
+  {
+    const FileSizeLimit full(10);
+    EXPECT_THROW(outbox.set_aside(std::string(100, 'x')), io::OutputError);
+  }
+  EXPECT_EQ(read_bytes(folder / "outbox.refused.jsonl"), "{}\n");
+  EXPECT_EQ(outbox.num_rejected(), 1U);
 }
 
 TEST(Outbox, ARunDirectoryWhoseResultsWaitIsNotUsedAgain) {
