@@ -18,33 +18,15 @@ constexpr std::size_t kMaxTextBytes = 400;  ///< of another program's text in a 
 
 RecordStream::RecordStream(Socket socket, WaitLimit wait, const RecordLimits& limits)
     : socket_(std::move(socket)), wait_(std::move(wait)), parser_(limits) {
-  io::mcap::RecordWriter header;
-  header.text("ros2");
-  header.text("patrol");
-  unsent_.raw(io::mcap::kMagic);
-  unsent_.record(io::mcap::kHeader, header);
+  io::mcap::write_start(unsent_);
 }
 
 void RecordStream::declare(const std::string& topic, const std::string& type, const std::string& definition) {
   const auto [known_schema, is_new_schema] =
       schemas_.emplace(std::pair(type, definition), static_cast<std::uint16_t>(schemas_.size() + 1));
-  if (is_new_schema) {
-    io::mcap::RecordWriter schema;
-    schema.number(known_schema->second);
-    schema.text(type);
-    schema.text("ros2msg");
-    schema.text(definition);
-    unsent_.record(io::mcap::kSchema, schema);
-  }
+  if (is_new_schema) io::mcap::write_schema(unsent_, known_schema->second, type, definition);
   const auto [known, is_new] = channels_.emplace(topic, static_cast<std::uint16_t>(channels_.size() + 1));
-  if (!is_new) return;
-  io::mcap::RecordWriter channel;
-  channel.number(known->second);
-  channel.number(known_schema->second);
-  channel.text(topic);
-  channel.text("cdr");
-  channel.number(std::uint32_t{0});  // no metadata
-  unsent_.record(io::mcap::kChannel, channel);
+  if (is_new) io::mcap::write_channel(unsent_, known->second, known_schema->second, topic);
 }
 
 void RecordStream::declare_known(const std::string& topic, const std::string& type) {
@@ -52,13 +34,7 @@ void RecordStream::declare_known(const std::string& topic, const std::string& ty
 }
 
 void RecordStream::write(const std::string& topic, Time log_time, std::string_view cdr) {
-  const auto time = static_cast<std::uint64_t>(log_time.count());
-  unsent_.record_head(io::mcap::kMessage, 2 + 4 + 8 + 8 + cdr.size());
-  unsent_.number(channels_.at(topic));
-  unsent_.number(std::uint32_t{0});  // sequence number
-  unsent_.number(time);
-  unsent_.number(time);
-  unsent_.raw(cdr);
+  io::mcap::write_message(unsent_, channels_.at(topic), 0, static_cast<std::uint64_t>(log_time.count()), cdr);
 }
 
 void RecordStream::flush() {

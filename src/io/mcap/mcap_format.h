@@ -63,6 +63,47 @@ class RecordWriter {
   std::string bytes_;
 };
 
+/// Appends the start of a file or a stream: magic and header.
+inline void write_start(RecordWriter& records) {
+  RecordWriter header;
+  header.text("ros2");
+  header.text("patrol");
+  records.raw(kMagic);
+  records.record(kHeader, header);
+}
+
+/// Appends a schema. `definition`: ROS 2 message definition, including all types that it uses.
+inline void write_schema(RecordWriter& records, std::uint16_t id, std::string_view type, std::string_view definition) {
+  RecordWriter schema;
+  schema.number(id);
+  schema.text(type);
+  schema.text("ros2msg");
+  schema.text(definition);
+  records.record(kSchema, schema);
+}
+
+/// Appends a channel without metadata.
+inline void write_channel(RecordWriter& records, std::uint16_t id, std::uint16_t schema, std::string_view topic) {
+  RecordWriter channel;
+  channel.number(id);
+  channel.number(schema);
+  channel.text(topic);
+  channel.text("cdr");
+  channel.number(std::uint32_t{0});  // no metadata
+  records.record(kChannel, channel);
+}
+
+/// Appends a message that is published at the time of its log entry, in ns.
+inline void write_message(RecordWriter& records, std::uint16_t channel, std::uint32_t sequence, std::uint64_t time,
+                          std::string_view cdr) {
+  records.record_head(kMessage, sizeof(channel) + sizeof(sequence) + 2 * sizeof(time) + cdr.size());
+  records.number(channel);
+  records.number(sequence);
+  records.number(time);  // log time
+  records.number(time);  // publish time
+  records.raw(cdr);
+}
+
 /// Bytes that violate the format. The message has no file and position; the caller adds them.
 class FormatError : public std::runtime_error {
  public:

@@ -31,12 +31,9 @@ struct McapWriter::ChunkIndex {
 McapWriter::McapWriter(const std::filesystem::path& path)
     : path_(path), file_(path, std::ios::binary | std::ios::trunc), compressor_(ZSTD_createCCtx(), &ZSTD_freeCCtx) {
   if (!file_) throw InputError(path.string() + ": cannot be written");
-  mcap::RecordWriter header, record;
-  header.text("ros2");
-  header.text("patrol");
-  record.raw(mcap::kMagic);
-  record.record(mcap::kHeader, header);
-  put(record.view());
+  mcap::RecordWriter start;
+  mcap::write_start(start);
+  put(start.view());
 }
 
 // After an error of the program the last messages before it are needed: write the open chunk.
@@ -60,27 +57,17 @@ void McapWriter::check_file() const {
 
 McapWriter::ChannelId McapWriter::add_channel(const std::string& topic, const std::string& type,
                                               const std::string& definition) {
-  mcap::RecordWriter schema, channel, records;
   const auto [known, is_new] =
       schemas_by_type_.emplace(std::pair(type, definition), static_cast<std::uint16_t>(schemas_by_type_.size() + 1));
-  if (is_new) {
-    schema.number(known->second);
-    schema.text(type);
-    schema.text("ros2msg");
-    schema.text(definition);
-    records.record(mcap::kSchema, schema);
-    schemas_.raw(records.view());
-  }
+  mcap::RecordWriter schema, channel;
+  if (is_new) mcap::write_schema(schema, known->second, type, definition);
   message_count_.push_back(0);
   const auto id = static_cast<ChannelId>(message_count_.size());
-  channel.number(id);
-  channel.number(known->second);
-  channel.text(topic);
-  channel.text("cdr");
-  channel.number(std::uint32_t{0});  // no metadata
-  channels_.record(mcap::kChannel, channel);
-  records.record(mcap::kChannel, channel);
-  chunk_.records.raw(records.view());
+  mcap::write_channel(channel, id, known->second, topic);
+  schemas_.raw(schema.view());
+  channels_.raw(channel.view());
+  chunk_.records.raw(schema.view());
+  chunk_.records.raw(channel.view());
   return id;
 }
 
@@ -89,12 +76,7 @@ void McapWriter::write(ChannelId channel, Time log_time, std::string_view cdr) {
   begin_chunk(time);
   mcap::RecordWriter& records = chunk_.records;
   chunk_.index[channel].push_back({.log_time = time, .offset_in_chunk = records.size()});
-  records.record_head(mcap::kMessage, sizeof(channel) + sizeof(std::uint32_t) + 2 * sizeof(time) + cdr.size());
-  records.number(channel);
-  records.number(message_count_[channel - 1u]++);
-  records.number(time);  // log time
-  records.number(time);  // publish time
-  records.raw(cdr);
+  mcap::write_message(records, channel, message_count_[channel - 1u]++, time, cdr);
 
   first_time_ = total_count_ == 0 ? time : std::min(first_time_, time);
   last_time_ = std::max(last_time_, time);
