@@ -17,7 +17,7 @@ constexpr std::size_t kMaxTextBytes = 400;  ///< of another program's text in a 
 }  // namespace
 
 RecordStream::RecordStream(Socket socket, WaitLimit wait, const RecordLimits& limits)
-    : socket_(std::move(socket)), wait_(std::move(wait)), parser_(limits) {
+    : socket_(std::move(socket)), wait_(std::move(wait)), max_record_bytes_(limits.record_bytes), parser_(limits) {
   io::mcap::write_start(unsent_);
 }
 
@@ -59,13 +59,15 @@ void RecordStream::throw_last_failure() {
 }
 
 io::McapMessage RecordStream::read() {
+  std::size_t num_bytes = 0;
   while (true) {
     if (const std::optional<io::McapMessage> message = parser_.next()) {
       if (message->channel.topic != kControlTopic<Failure>) return *message;
       const auto failure = control_message<Failure>(*message);
       throw LinkError(LinkFault::kInvalid, io::on_one_line(io::first_bytes(failure.text, kMaxTextBytes)));
     }
-    wait_.check("no answer");  // a side that keeps sending has no more time than a silent one
+    // Bytes that have arrived are read before the time is judged, but not without end: they may be no message.
+    if (num_bytes > max_record_bytes_ && wait_.remaining().count() <= 0) wait_.fail("no answer");
     char* const room = parser_.prepare(kReceiveBytes);
     std::size_t size = socket_.receive_ready(room, kReceiveBytes);
     if (size == 0) {
@@ -73,6 +75,7 @@ io::McapMessage RecordStream::read() {
       size = socket_.receive(room, kReceiveBytes, wait_);
     }
     parser_.commit(size);
+    num_bytes += size;
   }
 }
 

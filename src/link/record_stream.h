@@ -43,10 +43,10 @@ class RecordStream {
   /// Sends the messages. Throws the failure of the other side if it sent one and closed the connection.
   void flush();
   /// Begins the time that the other side has for its next answer, of any number of messages.
-  void restart_wait() { wait_.start = std::chrono::steady_clock::now(); }
+  void restart_wait() { wait_.restart(); }
 
-  /// Waits for the next message, valid until the next call. Throws LinkError (kInvalid) also with the text of a Failure
-  /// of the other side.
+  /// Waits for the next message, valid until the next call. A message that has arrived is returned also after the time
+  /// of the wait. Throws LinkError (kInvalid) also with the text of a Failure of the other side.
   io::McapMessage read();
 
   int peer_process() const { return socket_.peer_process(); }
@@ -60,6 +60,7 @@ class RecordStream {
 
   Socket socket_;
   WaitLimit wait_;
+  std::size_t max_record_bytes_;
   std::unique_ptr<SharedCore> core_;  ///< none: the thread is not bound
   RecordParser parser_;
   std::map<std::pair<std::string, std::string>, std::uint16_t> schemas_;  ///< sent, ids by type and definition

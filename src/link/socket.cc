@@ -25,16 +25,16 @@ namespace {
 
 constexpr std::chrono::milliseconds kSlice{100};  ///< between two checks for an interrupt
 
-/// Waits until the descriptor is ready. Throws LinkError if that takes longer than the wait.
+/// Waits until the descriptor is ready. Throws LinkError if that takes longer than the wait. The time is judged before
+/// the last look at the descriptor: what is ready by then counts, however late this process looks.
 void wait_for(int descriptor, short events, const WaitLimit& wait, const char* activity) {
   while (true) {
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(wait.start + wait.timeout - std::chrono::steady_clock::now());
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(wait.remaining());
     pollfd ready{.fd = descriptor, .events = events, .revents = 0};
     const auto slice = std::clamp(left, std::chrono::milliseconds(0), kSlice);
     if (::poll(&ready, 1, static_cast<int>(slice.count())) > 0) return;
     if (wait.is_interrupted && wait.is_interrupted()) throw LinkError(LinkFault::kInterrupted, "interrupted");
-    wait.check(activity);
+    if (left.count() <= 0) wait.fail(activity);
   }
 }
 
@@ -95,8 +95,7 @@ Socket open_socket(const Address& address) {
 
 }  // namespace
 
-void WaitLimit::check(const char* activity) const {
-  if (std::chrono::steady_clock::now() - start < timeout) return;
+void WaitLimit::fail(const char* activity) const {
   throw LinkError(LinkFault::kTimeout,
                   fmt::format("{} within {:g} s", activity, std::chrono::duration<double>(timeout).count()));
 }

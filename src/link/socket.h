@@ -28,10 +28,13 @@ Address parse_address(const std::string& text);
 struct WaitLimit {
   std::chrono::steady_clock::duration timeout = std::chrono::seconds(10);
   std::function<bool()> is_interrupted = {};  ///< polled ten times per second while a call waits
-  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+  std::function<std::chrono::steady_clock::time_point()> clock = std::chrono::steady_clock::now;
+  std::chrono::steady_clock::time_point start = clock();
 
-  /// Throws LinkError if the time is over. `activity`: what did not happen, "no answer".
-  void check(const char* activity) const;
+  void restart() { start = clock(); }
+  std::chrono::steady_clock::duration remaining() const { return start + timeout - clock(); }
+  /// Throws LinkError (kTimeout). `activity`: what did not happen, "no answer".
+  [[noreturn]] void fail(const char* activity) const;
 };
 
 /// Connected or listening stream socket. Calls wait as long as the wait allows and throw LinkError.
@@ -57,7 +60,8 @@ class Socket {
   std::size_t send_ready(std::string_view bytes) noexcept;
   /// Returns how many bytes were received without waiting: 0 also if the connection is closed.
   std::size_t receive_ready(char* bytes, std::size_t size) noexcept;
-  /// Waits for bytes and returns how many were received, at least one.
+  /// Waits for bytes and returns how many were received, at least one. Bytes that have arrived are received also after
+  /// the time of the wait.
   std::size_t receive(char* bytes, std::size_t size, const WaitLimit& wait);
 
   /// Port of a listening TCP socket.

@@ -42,6 +42,7 @@ void StackServer::begin_turn(Time now, bool is_last) {
 
 TurnAnswer StackServer::end_turn() {
   const auto [now, is_last] = turn_;
+  stream_.restart_wait();  // the simulator may have taken its time since the start of the turn
   TurnAnswer answer;
   std::size_t num_bytes = 0;
   while (true) {

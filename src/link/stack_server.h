@@ -50,7 +50,7 @@ class StackServer {
   void send(const std::string& topic, Time log_time, std::string_view cdr, bool is_early);
   /// Lets the stack begin its turn.
   void begin_turn(Time now, bool is_last);
-  /// Waits for the end of the turn.
+  /// Waits for the end of the turn. The stack has its time from this call on, besides the time since `begin_turn`.
   TurnAnswer end_turn();
   TurnAnswer turn(Time now, bool is_last) {
     begin_turn(now, is_last);

@@ -1,7 +1,5 @@
 #include "link/stack_server.h"
 
-#include <sys/socket.h>
-
 #include <functional>
 #include <future>
 #include <thread>
@@ -14,19 +12,16 @@
 #include "io/logs/topics.h"
 #include "link/link_error.h"
 #include "link/stack_client.h"
+#include "tests/link/connected_pair.h"
 
 namespace patrol::link {
 namespace {
 
 using namespace std::chrono_literals;
+using test::connected_pair;
+using test::HandClock;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-std::pair<Socket, Socket> connected_pair() {
-  int ends[2];
-  if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) throw std::runtime_error("socketpair");
-  return {Socket(ends[0]), Socket(ends[1])};
-}
 
 const Hello kHello{.program = "patrol test",
                    .scenario = "street/short",
@@ -234,6 +229,34 @@ TEST(StackServer, AStackThatKeepsPublishingHasNoMoreTimeThanASilentOne) {
       },
       300ms, {.num_messages = 1'000'000});
   EXPECT_EQ(error, "no answer within 0.3 s");
+}
+
+TEST(StackServer, TheTimeOfTheSimulatorIsNotThatOfTheStack) {
+  HandClock clock;
+  auto [server_end, client_end] = connected_pair();
+  std::promise<void> is_waited_for;
+  bool is_late = false;
+  StackServer server(std::move(server_end), {.timeout = 1s,
+                                             .is_interrupted =
+                                                 [&] {
+                                                   if (std::exchange(is_late, false)) is_waited_for.set_value();
+                                                   return false;
+                                                 },
+                                             .clock = clock.reader()});
+  std::thread other([&, end = std::move(client_end)]() mutable {
+    StackClient client(std::move(end));
+    client.begin("driver", {}, 20ms);
+    const ReceivedTurn turn = client.next_turn();
+    is_waited_for.get_future().wait();
+    client.done({.now = turn.now, .next_turn = {}, .mission_is_over = true});
+  });
+  server.greet(kHello);
+  server.begin_turn(10ms, false);
+  clock.now += 1h;  // the simulator steps through a delay
+  is_late = true;
+  EXPECT_NO_THROW(EXPECT_TRUE(server.end_turn().mission_is_over));
+  if (std::exchange(is_late, false)) is_waited_for.set_value();
+  other.join();
 }
 
 TEST(StackServer, AClosedConnectionIsNoticedAtOnce) {
