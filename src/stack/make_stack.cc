@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "stack/instruments/gas_instrument.h"
 #include "stack/instruments/water_instrument.h"
@@ -34,8 +36,18 @@ std::unique_ptr<Mission> make_gas_mission(const StackSettings& settings, const R
 void validate_goals(const std::vector<SavedGoal>& goals, const RobotDescription& robot, const Route& site_in_map) {
   if (std::none_of(goals.begin(), goals.end(), [](const SavedGoal& goal) { return goal.type == GoalType::kScan; }))
     return;
-  if (!site_in_map.lining) throw InputError("tunnel_mission: goal of type D requires a lining in the site survey");
+  if (!site_in_map.lining)
+    throw InputError("stack.tunnel_mission: goal of type D requires a lining in the site survey");
   robot.T_body("scanner");
+}
+
+/// Refuses a mission that starts or ends in a dock of a site without one.
+void require_dock(const TunnelMissionSettings& settings, const Route& site_in_map) {
+  const bool starts_docked = settings.start_docked && !settings.start_at_survey;
+  if (site_in_map.dock || (!settings.dock_after_run && !starts_docked)) return;
+  throw InputError(fmt::format("stack.tunnel_mission.{} = true: requires a dock in the site survey{}",
+                               settings.dock_after_run ? "dock_after_run" : "start_docked",
+                               settings.dock_after_run && starts_docked ? ", and start_docked = true too" : ""));
 }
 
 std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, const RobotDescription& robot,
@@ -44,12 +56,9 @@ std::unique_ptr<Mission> make_tunnel_mission(const StackSettings& settings, cons
       std::make_unique<TunnelMission>(settings.tunnel_mission, start.goals, start.has_teleop, start.map.has_value());
   validate_goals(start.goals, robot, site_in_map);
   if (!start.map && !start.has_teleop && settings.localizer == "automatic") {
-    throw InputError("tunnel_mission: requires a map or a teleoperated mapping drive");
+    throw InputError("stack.tunnel_mission: requires a map or a teleoperated mapping drive");
   }
-  const bool needs_dock = settings.tunnel_mission.dock_after_run ||
-                          (settings.tunnel_mission.start_docked && !settings.tunnel_mission.start_at_survey);
-  if (needs_dock && !site_in_map.dock)
-    throw InputError("tunnel_mission.dock_after_run: requires a dock in the site survey");
+  require_dock(settings.tunnel_mission, site_in_map);
   return mission;
 }
 

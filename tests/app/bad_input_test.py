@@ -202,6 +202,11 @@ class BadInput(unittest.TestCase):
                 ("mission: routes/short.json", "mission: routes/short.json\ntour: {stations: [{x_m: 1, y_m: 0}]}",
                  ["scenario.yaml:6: mission and tour are mutually exclusive"])):
             self.refuse_run(self.scenario(text.replace(old, new)), says=says)
+        more = "stack:\n  mission_type: tunnel\n"
+        num_lines = len(text.splitlines())
+        self.refuse_run(self.scenario(text + more), says=[f"scenario.yaml:{num_lines + 2}: stack.tunnel_mission: requires goals"])
+        self.refuse_run(self.scenario(text + more + "  tunnel_mission:\n    goal_types: S\n"),
+                        says=[f"scenario.yaml:{num_lines + 4}: stack.tunnel_mission.goal_types = S: must consist of the letters"])
         self.refuse_run(SHORT, "--set", "leaks.0.at=nosuch", says=["--set leaks.0.at=nosuch: leaks: unknown site"])
 
     def test_a_kidnap_to_where_the_robot_cannot_stand(self):

@@ -113,18 +113,33 @@ TEST(MakeStack, RefusesPartsThatDoNotGoTogether) {
               ThrowsMessage<InputError>(HasSubstr("requires a teleoperated mapping drive")));
 }
 
-TEST(MakeStack, RefusesAGasStationWithoutAMethaneMeterAndADockingWithoutADock) {
+TEST(MakeStack, RefusesAGasStationWithoutAMethaneMeter) {
   RobotDescription robot = quadruped_with_outline();
   robot.T_body_sensor.erase("tdlas");
   EXPECT_THAT([&] { make_stack({}, robot, route_with_a_station(), {}); },
               ThrowsMessage<InputError>(HasSubstr("tdlas")));
-  StackSettings settings = goal_settings();
-  settings.tunnel_mission.dock_after_run = true;
-  EXPECT_THAT(
-      [&] {
-        make_stack(settings, robot, {}, {.map = map_of_small_room(), .goals = {{.number = 1, .T_map_body = {}}}});
-      },
-      ThrowsMessage<InputError>(HasSubstr("requires a dock")));
+}
+
+TEST(MakeStack, ADockingWithoutADockNamesTheKeysThatNeedIt) {
+  const auto complaint = [](bool starts_docked, bool docks_after_run) -> std::string {
+    StackSettings settings = goal_settings();
+    settings.tunnel_mission.start_docked = starts_docked;
+    settings.tunnel_mission.start_at_survey = !starts_docked;
+    settings.tunnel_mission.dock_after_run = docks_after_run;
+    try {
+      make_stack(settings, quadruped_with_outline(), {},
+                 {.map = map_of_small_room(), .goals = {{.number = 1, .T_map_body = {}}}});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint(false, true), "stack.tunnel_mission.dock_after_run = true: requires a dock in the site survey");
+  EXPECT_EQ(complaint(true, false), "stack.tunnel_mission.start_docked = true: requires a dock in the site survey");
+  EXPECT_EQ(
+      complaint(true, true),
+      "stack.tunnel_mission.dock_after_run = true: requires a dock in the site survey, and start_docked = true too");
+  EXPECT_EQ(complaint(false, false), "");
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ std::unique_ptr<StackPort> stack_for(link::StackClient& client) {
   const std::filesystem::path file = folder.path() / "documents.yaml";
   io::save_text(file, hello.documents);
   Scenario scenario = load_scenario(file);
+  scenario.file.clear();           // messages must not name a file that is removed
   scenario.stack.command.clear();  // the built-in stack needs its sensors in this process as well
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(file));
   if (scenario.stack.compute.model != "fixed") client.wait_on_simulator_core();  // the simulator waits for each turn

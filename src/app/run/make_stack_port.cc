@@ -7,6 +7,7 @@
 #include "app/run/built_in_stack.h"
 #include "app/run/external_stack.h"
 #include "app/run/stack_documents.h"
+#include "app/scenario/mounts.h"
 #include "core/error.h"
 #include "inspect/route_frame.h"
 #include "sim/model_assembly.h"
@@ -58,17 +59,19 @@ std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const Scena
 
 stack::Stack make_stack(const Scenario& scenario, const ScenarioFiles& files, bool has_thread) {
   require_stations(scenario, files);
-  return stack::make_stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
-                           {.map = files.map,
-                            .map_registration = files.map_registration,
-                            .goals = files.goals,
-                            .references = references_of(files),
-                            .neighbor_model = files.neighbor_model,
-                            .has_teleop = files.has_teleop(),
-                            .site = {.T_site_start = files.T_site_start, .datum = files.datum},
-                            .map_period_s = scenario.log.map_period_s,
-                            .seed = scenario.seed,
-                            .has_thread = has_thread});
+  return with_location(scenario, [&] {
+    return stack::make_stack(scenario.stack, files.robot, inspect::to_map(files.route, files.T_site_start),
+                             {.map = files.map,
+                              .map_registration = files.map_registration,
+                              .goals = files.goals,
+                              .references = references_of(files),
+                              .neighbor_model = files.neighbor_model,
+                              .has_teleop = files.has_teleop(),
+                              .site = {.T_site_start = files.T_site_start, .datum = files.datum},
+                              .map_period_s = scenario.log.map_period_s,
+                              .seed = scenario.seed,
+                              .has_thread = has_thread});
+  });
 }
 
 }  // namespace patrol::app

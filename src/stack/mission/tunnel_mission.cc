@@ -12,7 +12,7 @@ namespace patrol::stack {
 GoalType TunnelMissionSettings::goal_type(std::size_t index) const {
   if (index >= goal_types.size()) return GoalType::kStop;
   if (const auto* row = find_named(kGoalTypes, std::string_view(goal_types).substr(index, 1))) return row->value;
-  throw InputError(fmt::format("tunnel_mission.goal_types = {}: must consist of the letters {}", goal_types,
+  throw InputError(fmt::format("stack.tunnel_mission.goal_types = {}: must consist of the letters {}", goal_types,
                                join(names_of(kGoalTypes), ", ")));
 }
 
@@ -24,9 +24,10 @@ TunnelMission::TunnelMission(const TunnelMissionSettings& settings, std::vector<
       has_map_(has_map),
       is_docked_(settings.start_docked && !settings.start_at_survey),
       localization_(settings.relocalization_timeout_s) {
-  validate(settings, "tunnel_mission");
+  validate(settings, "stack.tunnel_mission");
   for (std::size_t i = 0; i < settings.goal_types.size(); ++i) settings.goal_type(i);
-  if (goals_.empty() && !has_teleop) throw InputError("tunnel_mission: requires goals or teleoperation to save them");
+  if (goals_.empty() && !has_teleop)
+    throw InputError("stack.tunnel_mission: requires goals or teleoperation to save them");
 }
 
 MissionOutput TunnelMission::step(Time now, const MissionInput& input) {
