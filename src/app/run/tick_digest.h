@@ -17,7 +17,7 @@ struct TickDigest {
   std::uint64_t stack = 0;      ///< whole state of the stack
 };
 
-/// Hash of bytes, continued from another hash.
+/// Hash of bytes, continued from another hash. Every program computes the same one.
 std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t before = 0);
 
 /// One line: the time in nanoseconds and the hashes in hexadecimal digits.
