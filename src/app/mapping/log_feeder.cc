@@ -28,11 +28,7 @@ void LogFeeder::take_turn() {
   const StackAnswer answer = stack_->take_turn(now_);
   has_new_messages_ = false;
   next_turn_ = answer.next_turn;
-  record_turn({.turn = now_,
-               .delay = answer.delay,
-               .next_turn = answer.next_turn,
-               .is_last = false,
-               .mission_is_over = answer.mission_is_over});
+  record_turn(record_of(now_, answer));
   publish(answer.messages);
 }
 
@@ -56,7 +52,7 @@ void LogFeeder::publish(const std::vector<PublishedMessage>& messages) {
 
 void LogFeeder::finish() {
   const std::vector<PublishedMessage> messages = stack_->finish(now_);
-  record_turn({.turn = now_, .delay = {}, .next_turn = now_, .is_last = true, .mission_is_over = true});
+  record_turn(record_of_last(now_));
   publish(messages);
 }
 

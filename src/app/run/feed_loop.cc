@@ -102,11 +102,7 @@ class FeedLoop {
     answer.delay = recorded_delay.value_or(answer.delay);
     const Time time = answer_time(now, answer.delay);
     deliver_until(time, tick_at(now + answer.delay) > end_);
-    record_turn(time, {.turn = now,
-                       .delay = answer.delay,
-                       .next_turn = answer.next_turn,
-                       .is_last = false,
-                       .mission_is_over = answer.mission_is_over});
+    record_turn(time, record_of(now, answer));
     publish(time, answer.messages);
     return answer;
   }
@@ -118,7 +114,7 @@ class FeedLoop {
   void finish(Time now) {
     deliver_until(now, true);
     const std::vector<PublishedMessage> messages = stack_.finish(now);
-    record_turn(now, {.turn = now, .delay = {}, .next_turn = now, .is_last = true, .mission_is_over = true});
+    record_turn(now, record_of_last(now));
     publish(now, messages);
   }
 

@@ -230,11 +230,7 @@ class ClosedLoop {
   }
 
   void publish(Time now, const StackAnswer& answer) {
-    record_turn(now, {.turn = turn_,
-                      .delay = answer.delay,
-                      .next_turn = answer.next_turn,
-                      .is_last = false,
-                      .mission_is_over = answer.mission_is_over});
+    record_turn(now, record_of(turn_, answer));
     publish(now, answer.messages);
   }
 
@@ -297,7 +293,7 @@ class ClosedLoop {
     if (turn_is_running_) take_answer();
     if (answer_) publish(now, *answer_);
     const std::vector<PublishedMessage> messages = stack_.finish(now);
-    record_turn(now, {.turn = now, .delay = {}, .next_turn = now, .is_last = true, .mission_is_over = true});
+    record_turn(now, record_of_last(now));
     publish(now, messages);
   }
 

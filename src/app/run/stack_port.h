@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/messages.h"
 #include "core/state/state_archive_fwd.h"
 #include "core/time.h"
 #include "link/delivered_message.h"
@@ -30,6 +31,20 @@ struct StackAnswer {
   bool mission_is_over = false;
   Time delay{};  ///< time from the start of the turn until its messages take effect
 };
+
+/// Record of a turn and of its answer.
+inline StackTurnRecord record_of(Time turn, const StackAnswer& answer) {
+  return {.turn = turn,
+          .delay = answer.delay,
+          .next_turn = answer.next_turn,
+          .is_last = false,
+          .mission_is_over = answer.mission_is_over};
+}
+
+/// Record of the last turn, whose messages have no delay.
+inline StackTurnRecord record_of_last(Time turn) {
+  return {.turn = turn, .delay = {}, .next_turn = turn, .is_last = true, .mission_is_over = true};
+}
 
 /// The robot's software in the closed loop of a run. Use: `deliver` each message; `begin_turn`; `end_turn`; at the end
 /// `finish`. The stack may process messages before its turn, and the turn until its end, beside the simulator: its
