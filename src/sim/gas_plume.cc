@@ -45,13 +45,17 @@ Eigen::Vector2d downwind_of(double direction_deg) {
 
 Eigen::Vector3d leak_source(const mjModel& world, const LeakSettings& leak) {
   const int site = mj_name2id(&world, mjOBJ_SITE, leak.at.c_str());
-  // Sites of leaks belong to the world body, so their local position is in world.
-  if (site >= 0) return Eigen::Vector3d(world.site_pos + 3 * site);
+  // The local position of a site of the world body is in world.
+  if (site >= 0 && world.site_bodyid[site] == 0) return Eigen::Vector3d(world.site_pos + 3 * site);
   std::string known;
   for (int i = 0; i < world.nsite; ++i) {
     const std::string_view name = name_of(world, mjOBJ_SITE, i);
     if (world.site_bodyid[i] != 0 || name.empty()) continue;
     known += fmt::format("{}{}", known.empty() ? "" : ", ", name);
+  }
+  if (site >= 0) {
+    throw InputError(fmt::format("leaks: at = {}: site of the body {}: must be a site of the world (known: {})",
+                                 leak.at, name_of(world, mjOBJ_BODY, world.site_bodyid[site]), known));
   }
   throw InputError(fmt::format("leaks: unknown site at = '{}' (known: {})", leak.at, known));
 }

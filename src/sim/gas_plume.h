@@ -12,7 +12,7 @@ namespace patrol::sim {
 
 /// Methane leak at a site of the world.
 struct LeakSettings {
-  std::string at;         ///< name of the site, e.g. "regulator_box_2"
+  std::string at;         ///< name of a site of the world, e.g. "regulator_box_2"; sites of bodies are refused
   double rate_g_s = 1.0;  ///< mass of methane released per second
   double start_s = 0.0;   ///< time of the start of the leak
 
@@ -38,7 +38,7 @@ struct WindSettings {
   }
 };
 
-/// Returns the position of the leak, in world. Throws InputError when the world has no such site.
+/// Returns the position of the leak, in world. Throws InputError when the world has no such site, or a body has it.
 Eigen::Vector3d leak_source(const mjModel& world, const LeakSettings& leak);
 
 /// Density of methane at 20 degC and 1 atm, kg/m3 per unit of volume fraction.

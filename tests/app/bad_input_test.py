@@ -208,6 +208,7 @@ class BadInput(unittest.TestCase):
         self.refuse_run(self.scenario(text + more + "  tunnel_mission:\n    goal_types: S\n"),
                         says=[f"scenario.yaml:{num_lines + 4}: stack.tunnel_mission.goal_types = S: must consist of the letters"])
         self.refuse_run(SHORT, "--set", "leaks.0.at=nosuch", says=["--set leaks.0.at=nosuch: leaks: unknown site"])
+        self.refuse_run(SHORT, "--set", "leaks.0.at=imu", says=["--set leaks.0.at=imu: leaks: at = imu: site of the body"])
 
     def test_a_kidnap_to_where_the_robot_cannot_stand(self):
         self.refuse_run(SHORT, "--set", "kidnaps=[{at_s: 5, x_m: 1000, y_m: 1000}]",

@@ -124,5 +124,13 @@ TEST(GasPlume, AnUnknownSiteIsRefusedAndTheKnownOnesAreNamed) {
   }
 }
 
+TEST(GasPlume, ASiteOfABodyIsRefusedBecauseItsPositionIsNotInWorld) {
+  const SmallWorld world(
+      R"(<body name="robot"><freejoint/><geom size="0.1"/><site name="imu" pos="0.1 0 0"/></body><site name="box"/>)");
+  EXPECT_THAT([&] { GasPlume(*world.model, {{.at = "imu"}}, west_wind()); },
+              testing::ThrowsMessage<InputError>(
+                  "leaks: at = imu: site of the body robot: must be a site of the world (known: box)"));
+}
+
 }  // namespace
 }  // namespace patrol::sim::gas_plume_test
