@@ -18,7 +18,8 @@ struct FaultStatus {
   bool was_triggered = false;  ///< true: at least one message was changed
 };
 
-/// Applies the faults of a scenario to sensor messages.
+/// Applies the faults of a scenario to sensor messages. Random faults draw by the number of the sensor's message, from
+/// a stream of their own: no fault changes the draws of another one.
 class FaultInjector {
  public:
   FaultInjector(const std::vector<FaultSettings>& faults, std::uint64_t seed);
@@ -34,7 +35,7 @@ class FaultInjector {
   /// Saves or restores the state. Faults that the other run does not have are not restored.
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(last_good_, outlier_count_, jitter_count_);
+    archive(last_good_, num_messages_);
     std::vector<FaultStatus> stored = reports_;
     archive(stored);
     for (const FaultStatus& status : stored) set_triggered(status);
@@ -43,14 +44,14 @@ class FaultInjector {
  private:
   bool has_fault(std::string_view sensor) const;
   void set_triggered(const FaultStatus& status);
-  bool change(FaultStatus& report, Time ready, Time& due, SensorMessage& message);
+  bool change(std::size_t index, std::uint64_t number, Time ready, Time& due, SensorMessage& message);
 
   std::vector<FaultStatus> reports_;
+  std::vector<RandomStream> draws_;  ///< [fault]
   /// [type of the message], last message before a freeze; kept without faults as well, so that a branch may begin one;
   /// a panoramic scan, which is large, only with a fault of the scanner
   std::array<std::optional<SensorMessage>, std::variant_size_v<SensorMessage>> last_good_;
-  RandomStream outliers_, jitter_;
-  std::uint64_t outlier_count_ = 0, jitter_count_ = 0;
+  std::array<std::uint64_t, std::variant_size_v<SensorMessage>> num_messages_{};  ///< [type of the message]
 };
 
 }  // namespace patrol::sim

@@ -170,6 +170,41 @@ TEST(Fault, SpikesOf100NewtonsTouchOneFootMessageInTen) {
   EXPECT_NEAR(outliers, 200, 4.0 * std::sqrt(2000 * 0.1 * 0.9));
 }
 
+TEST(Fault, NoFaultChangesTheRandomDrawsOfAnotherOne) {
+  const std::vector<FaultSettings> faults = {fault("foot_contact", "outliers", 0.0, 10.0, 100.0),
+                                             fault("imu", "jitter", 0.0, 10.0, 0.01)};
+  const std::vector<FaultSettings> others = {fault("imu", "outliers", 0.0, 10.0), fault("gnss", "jitter", 0.0, 10.0),
+                                             fault("foot_contact", "dropout", 0.2, 0.1), faults[0], faults[1]};
+  HeldRobot robot;
+  auto alone = robot.run({}, faults, 1.0), together = robot.run({}, others, 1.0);
+  const auto arrivals_after = [](const std::vector<Arrival>& arrivals) {
+    std::map<Time, Time> after;  // the time of each arrival by its stamp
+    for (const Arrival& arrival : arrivals) after[arrival.stamp()] = arrival.at;
+    return after;
+  };
+  const std::size_t imu = SensorMessage(Imu{}).index(), feet = SensorMessage(FootContacts{}).index();
+  EXPECT_EQ(arrivals_after(alone[imu]), arrivals_after(together[imu]));
+  std::map<Time, double> forces_n;
+  for (const Arrival& arrival : alone[feet])
+    forces_n[arrival.stamp()] = std::get<FootContacts>(arrival.message).force_n[0];
+  ASSERT_GT(together[feet].size(), 200u);
+  for (const Arrival& arrival : together[feet])
+    EXPECT_EQ(std::get<FootContacts>(arrival.message).force_n[0], forces_n.at(arrival.stamp()));
+}
+
+TEST(Fault, TwoFaultsOfOneKindAndSensorDrawIndependently) {
+  HeldRobot robot;
+  const auto one = fault("foot_contact", "outliers", 0.0, 10.0, 100.0);
+  const auto good = robot.run_for<FootContacts>({}, {}, 4.0), bad = robot.run_for<FootContacts>({}, {one, one}, 4.0);
+  int num_single = 0;
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    const double difference =
+        std::get<FootContacts>(bad[i].message).force_n[0] - std::get<FootContacts>(good[i].message).force_n[0];
+    num_single += std::abs(difference - 100.0) < 1e-9;
+  }
+  EXPECT_NEAR(num_single, 180, 4.0 * std::sqrt(1000 * 0.18 * 0.82));
+}
+
 TEST(Fault, ALidarsDriftMovesItsRangesAndGnssLosesItsHeight) {
   HeldRobot robot;
   const auto good = robot.run_for<LaserScan>({}, {}, 0.75),
