@@ -154,7 +154,10 @@ void GasMission::next_station(MissionOutput& output) {
 void GasMission::finish(MissionOutput& output) {
   phase_ = Phase::kOver;
   if (num_failed_ == 0) {
-    output.events.push_back(event(EventKind::kMissionCompleted, "", "Every station was inspected."));
+    const bool inspects =
+        std::ranges::find(route_.stations, StationType::kInspect, &Station::type) != route_.stations.end();
+    output.events.push_back(event(EventKind::kMissionCompleted, "",
+                                  inspects ? "Every station was inspected." : "Every station was reached."));
   } else {
     output.events.push_back(event(EventKind::kMissionFailed, "",
                                   fmt::format("{} of {} stations were skipped.", num_failed_, route_.stations.size())));

@@ -242,7 +242,8 @@ void TunnelMission::end_run(MissionOutput& output) {
 void TunnelMission::finish(MissionOutput& output) {
   enter(Phase::kOver);
   if (num_failed_ == 0) {
-    output.events.push_back(event(EventKind::kMissionCompleted, "", "Every goal was reached."));
+    output.events.push_back(
+        event(EventKind::kMissionCompleted, "", goals_.empty() ? "No goals were saved." : "Every goal was reached."));
     return;
   }
   output.events.push_back(event(EventKind::kMissionFailed, "", fmt::format("Tasks failed: {}.", num_failed_)));

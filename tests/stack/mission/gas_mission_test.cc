@@ -14,7 +14,15 @@ TEST(GasMission, WalksMeasuresAndCompletesInOrder) {
   EXPECT_EQ(record.events[1].subject, "first");
   EXPECT_EQ(record.events[3].subject, "second");
   EXPECT_EQ(record.events[5].subject, "home");  // nothing is measured there
+  EXPECT_EQ(record.events[6].text, "Every station was inspected.");
   EXPECT_TRUE(mission.is_over());
+}
+
+TEST(GasMission, ThatInspectsNothingReportsThatItsStationsWereReached) {
+  Route route = make_route();
+  for (Station& station : route.stations) station.type = StationType::kPass;
+  GasRound mission(make_settings(), route, {});
+  EXPECT_EQ(run(mission, clean_air).find(EventKind::kMissionCompleted).text, "Every station was reached.");
 }
 
 TEST(GasMission, NamesItsStationsWhenItStarts) {

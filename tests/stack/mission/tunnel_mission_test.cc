@@ -71,6 +71,7 @@ TEST(TunnelMission, TenNavigationsOfTwoGoalsReachTwentyAndDockTenTimes) {
   EXPECT_EQ(robot.count(EventKind::kGoalReached), 20);
   EXPECT_EQ(robot.count(EventKind::kDocked), 10);
   EXPECT_EQ(robot.count(EventKind::kMissionCompleted), 1);
+  EXPECT_EQ(robot.events.back().text, "Every goal was reached.");
   EXPECT_EQ(robot.restarts, 10);
 }
 
@@ -123,6 +124,7 @@ TEST(TunnelMission, ARemoteControlThatFallsSilentForTwoSecondsIsOff) {
   robot.run(0.3);
   EXPECT_EQ(robot.count(EventKind::kMappingCompleted), 1);
   EXPECT_TRUE(robot.tour().is_over());
+  EXPECT_EQ(robot.events.back().text, "No goals were saved.");
 }
 
 TEST(TunnelMission, AGoalWithoutAWayIsReportedAndLeftOut) {
