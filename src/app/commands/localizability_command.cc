@@ -9,6 +9,7 @@
 #include "app/scenario/data_folders.h"
 #include "app/scenario/sensor_needs.h"
 #include "app/scoring/localizability_map.h"
+#include "app/scoring/mapping_lidar.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "io/files/csv.h"
@@ -64,8 +65,9 @@ ExitCode localizability_command(const LocalizabilityOptions& options) {
     throw InputError(fmt::format("--grid-step-m {}: must be in [0.05, 10]", options.grid_step_m));
   const Scenario scenario = load_scenario(options.scenario, options.overrides);
   const ScenarioFiles files = load_scenario_files(scenario, find_data_root(options.scenario));
-  require_sensors({{.sensor = "lidar", .by = "patrol localizability"}}, files.robot, scenario.robot,
-                  scenario.robot_location);
+  if (!mapping_lidar(files.robot))
+    require_sensors({{.sensor = "lidar", .by = "patrol localizability"}}, files.robot, scenario.robot,
+                    scenario.robot_location);
   ProgressBar bar;
   const LocalizabilityMap map = map_localizability(scenario, files, options.grid_step_m, [&](double fraction) {
     bar.show(fmt::format("localizability  {:3.0f} %", 100.0 * fraction), fraction);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/scoring/localizability_oracle.h"
+#include "app/scoring/mapping_lidar.h"
 #include "app/scoring/world_surfaces.h"
 #include "core/error.h"
 #include "score/distance_field.h"
@@ -22,7 +23,8 @@ LocalizabilityMap map_localizability(const Scenario& scenario, const ScenarioFil
   const WorldSurfaces world = world_surfaces(files, kLocalizabilityCell_m);
   LocalizabilityMap map{.surfaces = world.surfaces, .step_m = step_m, .positions = {}};
   const score::DistanceField clearance(score::occupied_cells(map.surfaces));
-  const LocalizabilityOracle oracle(*world.world, scenario.sensors.lidar, world.lidar_height_m);
+  const LocalizabilityOracle oracle(*world.world, scenario.sensors.*mapping_lidar(files.robot).value().settings,
+                                    world.lidar_height_m);
   const Eigen::Vector2d start = files.T_site_start.position();
   const auto position_at = [&](const std::pair<int, int>& node) {
     return Eigen::Vector2d(start + step_m * Eigen::Vector2d(node.first, node.second));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/scoring/localizability_oracle.h"
+#include "app/scoring/mapping_lidar.h"
 #include "sim/lining_deformation.h"
 
 namespace patrol::app {
@@ -45,9 +46,9 @@ double lidar_clock_fault_s(const std::vector<sim::FaultSettings>& faults, Time n
 
 score::RunReferences run_references(const Scenario& scenario, const ScenarioFiles& files, const TrueMap& truth) {
   score::LocalizabilityOracle localizability;
-  if (files.robot.T_body_sensor.contains("lidar")) {
+  if (const auto lidar = mapping_lidar(files.robot)) {
     const auto oracle =
-        std::make_shared<LocalizabilityOracle>(*truth.world, scenario.sensors.lidar, truth.lidar_height_m);
+        std::make_shared<LocalizabilityOracle>(*truth.world, scenario.sensors.*lidar->settings, truth.lidar_height_m);
     localizability = [oracle](const Eigen::Vector2d& p_world_m) { return oracle->at(p_world_m); };
   }
   score::RunReferences references{

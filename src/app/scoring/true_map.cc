@@ -1,9 +1,11 @@
 #include "app/scoring/true_map.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/scoring/mapping_lidar.h"
 #include "render/reference_map.h"
 
 namespace patrol::app {
@@ -11,18 +13,10 @@ namespace {
 
 constexpr double kReferenceResolution_m = 0.025;
 
-/// Returns the height of the frame that maps: the lidar, the 3D lidar, or the body of a robot without lidars.
-double lidar_height_in_body_m(const RobotDescription& robot) {
-  for (const char* frame : {"lidar", "lidar3d"}) {
-    if (robot.T_body_sensor.contains(frame)) return robot.T_body(frame).position.z();
-  }
-  return 0.0;
-}
-
 double mean_lidar_height_m(const RunRecord& record, const ScenarioFiles& files) {
   double height_m = 0.0;
   for (const StampedPose& entry : record.T_world_body) height_m += entry.pose.position.z();
-  return height_m / static_cast<double>(record.T_world_body.size()) + lidar_height_in_body_m(files.robot);
+  return height_m / static_cast<double>(record.T_world_body.size()) + mapping_height_in_body_m(files.robot);
 }
 
 }  // namespace
@@ -42,7 +36,9 @@ TrueMap true_map(const RunRecord& record, const Scenario& scenario, const Scenar
                                                                         .actors = std::move(actors),
                                                                         .visited_m = std::move(visited_m)});
   truth.reference_agreement = map.check.agreement_ratio();
-  truth.reference = score::mark_observable(map.map, record.T_world_body, scenario.sensors.lidar.range_max_m);
+  const std::optional<MappingLidar> lidar = mapping_lidar(files.robot);
+  const LidarSettings& settings = lidar ? scenario.sensors.*lidar->settings : scenario.sensors.lidar;
+  truth.reference = score::mark_observable(map.map, record.T_world_body, settings.range_max_m);
   return truth;
 }
 

@@ -1,5 +1,6 @@
 #include "app/scoring/world_surfaces.h"
 
+#include "app/scoring/mapping_lidar.h"
 #include "render/reference_map.h"
 #include "sim/model_assembly.h"
 
@@ -8,7 +9,7 @@ namespace {
 
 double lidar_height_m(const ScenarioFiles& files) {
   return sim::start_height_m(files.world_xml.string(), files.simulated_robot(), files.robot, files.T_site_start) +
-         files.robot.T_body("lidar").position.z();
+         mapping_height_in_body_m(files.robot);
 }
 
 }  // namespace

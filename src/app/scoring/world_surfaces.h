@@ -6,7 +6,8 @@
 
 namespace patrol::app {
 
-/// Surfaces of a scenario's world at the height of its robot's lidar at the start; available before a run.
+/// Surfaces of a scenario's world at the height of its robot's lidar (mapping_lidar.h) at the start; available before a
+/// run.
 struct WorldSurfaces {
   sim::ModelPtr world;
   double lidar_height_m = 0.0;
