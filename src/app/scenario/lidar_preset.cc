@@ -27,6 +27,8 @@ struct ProgramPresets {
   }
 };
 
+bool is_lidar(std::string_view sensor) { return std::ranges::find(kLidarSensors, sensor) != kLidarSensors.end(); }
+
 bool is_of_program(const std::string& name) {
   const std::vector<std::string> names = lidar_preset_names();
   return std::ranges::find(names, name) != names.end();
@@ -74,12 +76,19 @@ void insert_preset(YAML::Node& document, const std::string& sensor, const LidarP
   document["as_built"]["lidar"] = completed(tolerances, node_of(preset.as_built));
 }
 
-/// Returns the preset of a file that a node names; none for a preset of the program or an unknown name.
+/// Returns the preset of a file that a node names; none for a preset of the program or an unknown name. The file must
+/// not have tolerances for a sensor other than `lidar`, because as_built.lidar has no place for them.
 std::optional<LidarPreset> named_preset(const std::filesystem::path& file, const YAML::Node& name,
-                                        const std::string& key) {
+                                        const std::string& key, const std::string& sensor) {
   if (!name.IsDefined() || !name.IsScalar() || is_of_program(name.Scalar())) return std::nullopt;
   const std::optional<std::filesystem::path> found = preset_file(name.Scalar(), find_data_root(file));
-  if (found) return load_lidar_preset(*found);
+  if (found) {
+    const YAML::Node tolerances = find_node(io::load_document(*found, {}), {"as_built"});
+    if (sensor == "lidar" || !is_lidar(sensor) || !tolerances.IsDefined()) return load_lidar_preset(*found);
+    throw InputError(fmt::format("{} = {}: {}: tolerances are those of the frame lidar: must be absent for {}",
+                                 location_of(file, name, key), name.Scalar(),
+                                 location_of(*found, tolerances, "as_built"), sensor));
+  }
   if (!is_path(name.Scalar())) return std::nullopt;
   throw InputError(
       fmt::format("{} = {}: file not found, below the working directory", location_of(file, name, key), name.Scalar()));
@@ -116,7 +125,7 @@ void expand_lidar_presets(const std::filesystem::path& file, YAML::Node& documen
   if (!document.IsMap()) return;
   for (const char* sensor : kLidarSensors) {
     const YAML::Node name = find_node(document, {"sensors", sensor, "preset"});
-    if (const auto preset = named_preset(file, name, fmt::format("sensors.{}.preset", sensor)))
+    if (const auto preset = named_preset(file, name, fmt::format("sensors.{}.preset", sensor), sensor))
       insert_preset(document, sensor, *preset);
   }
   const YAML::Node mounts = find_node(document, {"mounts"});
@@ -124,12 +133,11 @@ void expand_lidar_presets(const std::filesystem::path& file, YAML::Node& documen
   for (std::size_t i = 0; i < mounts.size(); ++i) {
     YAML::Node mount = mounts[i];
     if (!mount.IsMap() || !mount["frame"].IsDefined() || !mount["preset"].IsDefined()) continue;
-    const auto preset = named_preset(file, mount["preset"], fmt::format("mounts.{}.preset", i));
+    const std::string frame = mount["frame"].IsScalar() ? mount["frame"].Scalar() : "";
+    const auto preset = named_preset(file, mount["preset"], fmt::format("mounts.{}.preset", i), frame);
     if (!preset) continue;
     mount["preset"] = preset->lidar.preset;
-    const std::string frame = mount["frame"].IsScalar() ? mount["frame"].Scalar() : "";
-    const bool is_lidar = std::ranges::find(kLidarSensors, std::string_view(frame)) != kLidarSensors.end();
-    if (is_lidar && !find_node(document, {"sensors", frame, "preset"}).IsDefined())
+    if (is_lidar(frame) && !find_node(document, {"sensors", frame, "preset"}).IsDefined())
       insert_preset(document, frame, *preset);
   }
 }

@@ -38,9 +38,9 @@ LidarPreset find_lidar_preset(const std::string& name, const std::filesystem::pa
 
 /// Replaces the names of preset files in the document of a scenario or a robot profile (`sensors.*.preset`,
 /// `mounts.*.preset`) by the preset that the file is based on, with its values as keys of `sensors.*`. The values of
-/// the file's as-built tolerances become keys of `as_built.lidar`, for the sensor `lidar` only. Keys of the document
-/// win. Names that neither the program nor a file has stay, for the reader to refuse. Throws InputError with file,
-/// line and key.
+/// the file's as-built tolerances become keys of `as_built.lidar`, for the sensor `lidar`; for another sensor, a file
+/// with tolerances is refused. Keys of the document win. Names that neither the program nor a file has stay, for the
+/// reader to refuse. Throws InputError with file, line and key.
 void expand_lidar_presets(const std::filesystem::path& file, YAML::Node& document);
 
 }  // namespace patrol::app

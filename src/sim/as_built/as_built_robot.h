@@ -37,7 +37,7 @@ class AsBuiltRobot {
 
   /// Returns the clock of a device: "firmware", or the name of a sensor.
   DeviceClock clock(const std::string& device) const;
-  /// Returns the errors of a lidar by its frame.
+  /// Returns the errors of a lidar by its frame. Measured errors are those of the frame `lidar` alone.
   LidarErrors lidar(const std::string& frame) const;
   ImuErrors imu() const;
   /// Returns the errors of the joint encoders; none of wheels, whose angle has no zero.

@@ -59,8 +59,8 @@ struct ClockTolerances {
 ///
 /// SICK states both parts of the TiM571's error (LidarSettings::of_preset): its noise is that of sensors.lidar and its
 /// range offset has the bounds of the systematic error, +-60 mm. A scenario or robot profile that selects another
-/// preset of sensors.lidar starts from the tolerances of that preset; values in section as_built.lidar win. A 3D lidar
-/// shares the tolerances of the 2D lidar.
+/// preset of sensors.lidar starts from the tolerances of that preset; values in section as_built.lidar win. A rear
+/// and a 3D lidar share the tolerances, but not the measured errors, which are those of the device at frame `lidar`.
 struct LidarTolerances {
   static constexpr const char* kSource =
       "Slamtec RPLIDAR C1 and S series data sheets: accuracy 30 mm, flatness 0 to 1.5 deg, rate 5 %; preset tim571: "
@@ -79,8 +79,8 @@ struct LidarTolerances {
   double rate_std = 0.01;         ///< standard deviation of the relative revolution rate, which varies with a
                                   ///< correlation time of 5 s; the sheet bounds fluctuations by 5 %. Messages state the
                                   ///< nominal rate
-  double measured_range_offset_m = 0.0;  ///< range offset of one device by calibration (patrol calibrate --sensor
-                                         ///< lidar), added to the draw within the tolerance
+  double measured_range_offset_m = 0.0;  ///< range offset of the device at frame `lidar` by calibration (patrol
+                                         ///< calibrate --sensor lidar), added to the draw within the tolerance
   double measured_range_scale = 0.0;     ///< relative range error by calibration, added to the draw
   double measured_reflectivity_m = 0.0;  ///< range error on 10 % reflectivity relative to 50 % by calibration, added
                                          ///< to the draw

@@ -64,12 +64,25 @@ TEST_F(LidarPresetFile, IsFoundByItsNameBelowModelsLidarsAndForAMount) {
   write("models/lidars/office.yaml", kFitted);
   write("worlds/my.yaml", "robot: none\nsensors: {lidar: {preset: office}}\n");
   EXPECT_EQ(load_scenario(folder / "worlds/my.yaml").sensors.lidar.range_noise_std_m, 0.031);
-  write("worlds/rear.yaml", "robot: none\nmounts: [{frame: lidar_rear, x_m: -0.3, preset: office}]\n");
+  write("models/lidars/rear.yaml", "lidar: {preset: tim571, range_noise_std_m: 0.031}\n");
+  write("worlds/rear.yaml", "robot: none\nmounts: [{frame: lidar_rear, x_m: -0.3, preset: rear}]\n");
   const Scenario rear = load_scenario(folder / "worlds/rear.yaml");
   EXPECT_EQ(rear.sensors.lidar_rear.range_noise_std_m, 0.031);
   EXPECT_TRUE(rear.sensors.lidar_rear.enabled);
   EXPECT_EQ(rear.mounts.at(0).preset, "tim571");
   EXPECT_EQ(rear.as_built.lidar.measured_range_offset_m, 0.0);  // the tolerances are those of the front lidar
+}
+
+TEST_F(LidarPresetFile, WithTolerancesIsRefusedForLidarsOtherThanThatOfTheFrameLidar) {
+  const std::string preset = write("fitted.yaml", kFitted);
+  const std::string says = " = " + preset + ": " + preset +
+                           ":2: as_built: tolerances are those of the frame lidar: must be absent for lidar_rear";
+  const std::string mounts =
+      write("mounts.yaml", "robot: none\nmounts:\n  - {frame: lidar_rear, preset: " + preset + "}\n");
+  EXPECT_THAT([&] { load_scenario(mounts); },
+              ThrowsMessage<InputError>(HasSubstr(mounts + ":3: mounts.0.preset" + says)));
+  EXPECT_THAT([&] { load_scenario(kShort, {"sensors.lidar_rear.preset=" + preset}); },
+              ThrowsMessage<InputError>(HasSubstr("sensors.lidar_rear.preset" + says)));
 }
 
 TEST_F(LidarPresetFile, AnInvalidOneIsRefusedWithItsLineAndKey) {

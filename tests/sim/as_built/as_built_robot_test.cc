@@ -385,6 +385,7 @@ TEST(AsBuiltRobot, AMeasuredErrorOfTheLidarShiftsTheDraw) {
   const AsBuiltRobot shifted(settings, tracked(), 7);
   EXPECT_NEAR(shifted.lidar("lidar").range_offset_m - drawn.lidar("lidar").range_offset_m, 0.02, 1e-15);
   EXPECT_EQ(shifted.lidar("lidar").range_scale, drawn.lidar("lidar").range_scale);
+  EXPECT_EQ(shifted.lidar("lidar3d").range_offset_m, drawn.lidar("lidar3d").range_offset_m);  // another device
 }
 
 TEST(AsBuiltRobot, NegativeToleranceIsRefused) {
