@@ -1,7 +1,6 @@
 #include "app/realism/log_on_site.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -17,7 +16,7 @@
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "io/trajectories/tum.h"
-#include "io/urdf.h"
+#include "sim/as_built/as_built_robot.h"
 
 namespace patrol::app {
 namespace {
@@ -56,20 +55,6 @@ Trajectory lifted(const Trajectory& path, const Pose2& T_site_path, const Trajec
     result.push_back({entry.stamp, pose});
   }
   return result;
-}
-
-/// Returns the error of the mount of the lidar that the simulator drew for the robot of a run.
-Pose3 as_built_mount(const AsBuiltTruth& as_built) {
-  const auto value = [&as_built](const char* name) {
-    const auto found = std::ranges::find(as_built.values, name, [](const auto& entry) { return entry.first; });
-    return found == as_built.values.end() ? 0.0 : found->second;
-  };
-  // The angles are twice the vector part of the quaternion (sim/as_built/as_built_robot.cc).
-  const Eigen::Vector3d vector =
-      0.5 * Eigen::Vector3d(value("lidar.roll_rad"), value("lidar.pitch_rad"), value("lidar.yaw_rad"));
-  const double w = std::sqrt(std::max(0.0, 1.0 - vector.squaredNorm()));
-  return {{value("lidar.x_m"), value("lidar.y_m"), value("lidar.z_m")},
-          Eigen::Quaterniond(w, vector.x(), vector.y(), vector.z()).normalized()};
 }
 
 Trajectory path_of_run(const std::filesystem::path& log, const RunRecord& record, const std::string& name) {
@@ -116,7 +101,8 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
     const RunRecord record = read_run_record(source.log);
     source.T_site_body = path_of_run(source.log, record, source.path_name);
     // True poses of the body give those of the beams with the mount as built only.
-    if (source.path_name == "truth") source.T_body_lidar = *source.T_body_lidar * as_built_mount(record.as_built);
+    if (source.path_name == "truth")
+      source.T_body_lidar = *source.T_body_lidar * sim::mount_error(record.as_built, "lidar");
   } else {
     source.T_site_body = io::load_tum(source.path_name, io::SameStamps::kKeepFirst);
   }

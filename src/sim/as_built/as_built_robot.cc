@@ -1,5 +1,7 @@
 #include "sim/as_built/as_built_robot.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +12,10 @@
 
 namespace patrol::sim {
 namespace {
+
+/// Names of the values of a sensor's mount in the ground truth, after its frame, [axis].
+constexpr const char* kMountPosition[] = {".x_m", ".y_m", ".z_m"};
+constexpr const char* kMountAngle[] = {".roll_rad", ".pitch_rad", ".yaw_rad"};
 
 /// Returns the specific force in the frame of the IMU while the body stands level.
 Eigen::Vector3d force_at_rest_mps2(const RobotDescription& robot) {
@@ -176,13 +182,9 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors, const ImuE
   add("lidar.range_offset_m", lidar_errors.range_offset_m);
   for (const auto& [frame, T_body_sensor] : actual_.T_body_sensor) {
     const Pose3 T_nominal_actual = nominal_.T_body(frame).inverse() * T_body_sensor;
-    add(frame + ".x_m", T_nominal_actual.position.x());
-    add(frame + ".y_m", T_nominal_actual.position.y());
-    add(frame + ".z_m", T_nominal_actual.position.z());
     const Eigen::Vector3d rotation = 2.0 * T_nominal_actual.rotation.vec();  // small angles about x, y, z
-    add(frame + ".roll_rad", rotation.x());
-    add(frame + ".pitch_rad", rotation.y());
-    add(frame + ".yaw_rad", rotation.z());
+    for (int axis = 0; axis < 3; ++axis) add(frame + kMountPosition[axis], T_nominal_actual.position[axis]);
+    for (int axis = 0; axis < 3; ++axis) add(frame + kMountAngle[axis], rotation[axis]);
   }
   const Eigen::Vector3d by_gravity_radps = imu_errors.g_sensitivity * force_at_rest_mps2(nominal_);
   constexpr const char* kAxes[] = {"x", "y", "z"};
@@ -209,6 +211,20 @@ AsBuiltTruth AsBuiltRobot::truth(const std::vector<int>& uwb_anchors, const ImuE
   add("placement.y_m", T_surveyed_start_.y);
   add("placement.yaw_rad", T_surveyed_start_.yaw);
   return truth;
+}
+
+Pose3 mount_error(const AsBuiltTruth& truth, const std::string& frame) {
+  const auto value = [&](const std::string& name) {
+    const auto found = std::ranges::find(truth.values, name, [](const auto& entry) { return entry.first; });
+    return found == truth.values.end() ? 0.0 : found->second;
+  };
+  Eigen::Vector3d position_m, vector;  // vector part of the quaternion: half of the angles
+  for (int axis = 0; axis < 3; ++axis) {
+    position_m[axis] = value(frame + kMountPosition[axis]);
+    vector[axis] = 0.5 * value(frame + kMountAngle[axis]);
+  }
+  const double w = std::sqrt(std::max(0.0, 1.0 - vector.squaredNorm()));
+  return {position_m, Eigen::Quaterniond(w, vector.x(), vector.y(), vector.z()).normalized()};
 }
 
 }  // namespace patrol::sim

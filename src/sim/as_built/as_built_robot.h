@@ -71,4 +71,8 @@ class AsBuiltRobot {
   Pose2 T_surveyed_start_;
 };
 
+/// Returns the actual pose of a sensor relative to its nominal one, from the values of `AsBuiltRobot::truth`; the
+/// identity if these do not have the frame.
+Pose3 mount_error(const AsBuiltTruth& truth, const std::string& frame);
+
 }  // namespace patrol::sim
