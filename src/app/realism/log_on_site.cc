@@ -44,6 +44,11 @@ realism::LidarDevice device_of(const LidarPreset& preset) {
                      .incidence_m = preset.as_built.measured_incidence_m}};
 }
 
+/// Returns whether all heights are 0, as of the paths of planar estimates.
+bool is_planar(const Trajectory& path) {
+  return std::ranges::all_of(path, [](const StampedPose& entry) { return entry.pose.position.z() == 0.0; });
+}
+
 /// Lifts a planar path to the mean height of another one.
 Trajectory lifted(const Trajectory& path, const Pose2& T_site_path, const Trajectory& heights) {
   double z_m = 0.0;
@@ -105,6 +110,8 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
       source.T_body_lidar = *source.T_body_lidar * sim::mount_error(record.as_built, "lidar");
   } else {
     source.T_site_body = io::load_tum(source.path_name, io::SameStamps::kKeepFirst);
+    if (source.is_run && is_planar(source.T_site_body))
+      source.T_site_body = lifted(source.T_site_body, {}, read_run_record(source.log).T_world_body);
   }
   const Pose3 T_site_path = to_pose3({settings.path.x_m, settings.path.y_m, to_rad(settings.path.yaw_deg)});
   for (StampedPose& entry : source.T_site_body) entry.pose = T_site_path * entry.pose;

@@ -32,7 +32,8 @@ struct PathFrameSettings {
 
 struct LogOnSiteSettings {
   int max_scans = 400;          ///< scans that are used, evenly over the log
-  double lidar_height_m = 0.0;  ///< height of the lidar in site; 0: by path and mount of a run, otherwise 0.4 m
+  double lidar_height_m = 0.0;  ///< height of the lidar in site; 0: by path and mount of a run, otherwise 0.4 m. A path
+                                ///< of a run without heights has the mean height of the ground truth
   PathFrameSettings path;       ///< pose of the frame of the path in site
   io::ScanLogOptions log;
 
