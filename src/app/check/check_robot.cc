@@ -15,8 +15,6 @@
 #include "core/sensors/registry.h"
 #include "core/skid_spread.h"
 #include "core/wheel_kinematics.h"
-#include "io/urdf.h"
-#include "io/yaml/settings_yaml.h"
 #include "sim/locomotion/roller_contact.h"
 #include "sim/sensors/sensor_suite_settings.h"
 
@@ -150,22 +148,21 @@ const char* name_of(DriveKind kind) {
 
 CheckRobot load_check_robot(const std::string& name, const std::vector<std::string>& overrides,
                             std::optional<std::uint64_t> seed, const std::filesystem::path& data_root) {
-  const std::filesystem::path urdf = find_robot(name, data_root);
-  Scenario scenario = default_scenario(name, data_root);
-  const std::vector<MountSettings> mounts = std::exchange(scenario.mounts, {});
-  const YAML::Node given = io::parse_overrides(overrides);
-  io::SettingsReader::read_section({"--set", overrides}, given, "", scenario);
-  complete_mounts("--set", YAML::Node(), scenario.mounts);
-  io::MountedRobot mounted =
-      io::load_mounted_robot(urdf.string(), sensor_mounts(merge_mounts(mounts, scenario.mounts)));
-  require_sensors(firmware_needs(mounted.description), mounted.description, name, "patrol check");
+  find_robot(name, data_root);  // throws for an unknown robot
+  std::vector<std::string> settings = overrides;
+  settings.push_back("robot=" + name);
+  const Scenario scenario = load_scenario({}, settings, data_root);
+  LoadedRobot loaded = load_robot(name, data_root, scenario.mounts);
+  std::vector<SensorNeed> needs = firmware_needs(loaded.description);
+  needs.insert(needs.end(), scenario.requested.begin(), scenario.requested.end());
+  require_sensors(needs, loaded.description, name, "patrol check");
   CheckRobot robot;
   robot.name = name;
   robot.seed = seed.value_or(scenario.seed);
   robot.overrides = overrides;
-  robot.description = std::move(mounted.description);
+  robot.description = std::move(loaded.description);
   sim::set_drive_type(scenario.wheel_drive, robot.description);
-  robot.simulator.robot_urdf = {urdf.string(), std::move(mounted.urdf)};
+  robot.simulator.robot_urdf = {loaded.urdf_file.string(), std::move(loaded.urdf)};
   robot.simulator.site.ground = {
       .all = {.geoms = {"ground*"}, .materials = {}, .groups = {}}, .curbs = {}, .max_step_m = 0.0};
   robot.simulator.as_built = scenario.as_built;

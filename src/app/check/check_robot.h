@@ -70,9 +70,9 @@ struct CheckRobot {
   bool turns_in_place() const { return limits.min_turning_radius_m == 0.0; }
 };
 
-/// Loads a robot of `models` with its profile and "path=value" overrides of scenario settings. Sensors that the
-/// firmware does not read are switched off. Without `seed`, the seed is that of the settings. Throws InputError for an
-/// unknown robot and for invalid overrides.
+/// Loads a robot of `models` with its profile and "path=value" overrides of scenario settings, as a run without a
+/// scenario file. Sensors that the firmware does not read are switched off. Without `seed`, the seed is that of the
+/// settings. Throws InputError for an unknown robot and for invalid overrides.
 CheckRobot load_check_robot(const std::string& name, const std::vector<std::string>& overrides,
                             std::optional<std::uint64_t> seed, const std::filesystem::path& data_root);
 

@@ -3,9 +3,9 @@
 #include "app/commands/commands.h"
 #include "app/common/progress_bar.h"
 #include "app/scenario/data_folders.h"
+#include "app/scenario/mounts.h"
 #include "app/scenario/scenario.h"
 #include "importer/site/course.h"
-#include "io/urdf.h"
 
 namespace patrol::app {
 namespace {
@@ -16,8 +16,8 @@ constexpr double kBenchmarkRadius_m = 0.333;
 /// Returns the courses of the benchmark for the size and the speed of a robot.
 importer::CourseSettings settings_for(const std::string& robot) {
   const std::filesystem::path data_root = find_data_root({});
-  const RobotDescription description = io::load_robot_description(find_robot(robot, data_root).string());
   const Scenario scenario = default_scenario(robot, data_root);
+  const RobotDescription description = load_robot(robot, data_root, scenario.mounts).description;
   return {.scale = description.outline_radius_m() / kBenchmarkRadius_m,
           .max_speed_mps = scenario.stack.navigation.local_planner.dwa.max_speed_mps};
 }

@@ -94,9 +94,7 @@ void warn_of_folder(const std::filesystem::path& out, const std::string& folder)
 void use_robot(const std::string& name, importer::MissionOptions& mission) {
   constexpr double kMargin_m = 0.1;
   const std::filesystem::path data_root = find_data_root({});
-  const RobotDescription robot = io::load_mounted_robot(find_robot(name, data_root).string(),
-                                                        sensor_mounts(default_scenario(name, data_root).mounts))
-                                     .description;
+  const RobotDescription robot = load_robot(name, data_root, default_scenario(name, data_root).mounts).description;
   mission.robot = name;
   if (const auto lidar = robot.T_body_sensor.find("lidar"); lidar != robot.T_body_sensor.end())
     mission.lidar_height_m = robot.body_height_m() + lidar->second.position.z();

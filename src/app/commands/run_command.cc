@@ -17,11 +17,11 @@
 #include "app/run/run_verdict.h"
 #include "app/run/terminal_view.h"
 #include "app/scenario/data_folders.h"
+#include "app/scenario/mounts.h"
 #include "app/scoring/expectations.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "core/text.h"
-#include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
 #include "sim/locomotion/swing_speed.h"
 
@@ -230,7 +230,7 @@ void warn_of_slow_joints(const RunOptions& options, const Scenario& scenario) {
   constexpr double kMaxRatio = 1.5;  // above what gaits are adapted to (sim/locomotion/swing_speed.h)
   if (!options.from.empty()) return;
   const std::filesystem::path data_root = find_data_root(named_world(options) ? "" : options.scenario);
-  const RobotDescription robot = io::load_robot_description(find_robot(scenario.robot, data_root).string());
+  const RobotDescription robot = load_robot(scenario.robot, data_root, scenario.mounts).description;
   if (robot.legs.empty()) return;
   const double ratio = sim::peak_swing_speed_ratio(robot, scenario.locomotion, scenario.locomotion.max_forward_mps);
   if (ratio <= kMaxRatio) return;

@@ -1,6 +1,5 @@
 #include "app/plan/plan_settings.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -8,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "app/scenario/data_folders.h"
+#include "app/scenario/mounts.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
 #include "core/named_table.h"
 #include "core/text.h"
-#include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
 #include "plan/routes/global_planner.h"
 #include "plan/routes/planners.h"
@@ -32,22 +31,11 @@ plan::Footprint outline_of_disc(double radius_m) {
   return plan::Footprint(corners_m);
 }
 
-std::filesystem::path urdf_of(const std::string& robot, const std::filesystem::path& data_root) {
-  const std::filesystem::path urdf = robot_file(robot, ".urdf", data_root);
-  if (std::filesystem::exists(urdf)) return urdf;
-  std::vector<std::string> known;
-  for (const auto& entry : std::filesystem::directory_iterator(data_root / "models")) {
-    const std::string name = entry.path().filename().string();
-    if (std::filesystem::exists(entry.path() / (name + ".urdf"))) known.push_back(name);
-  }
-  std::sort(known.begin(), known.end());
-  throw InputError(fmt::format("--robot: unknown robot '{}' (known: {})", robot, join(known, ", ")));
-}
-
 void set_robot(const std::string& robot, const std::filesystem::path& data_root, PlanSetup& setup) {
-  const std::filesystem::path urdf = urdf_of(robot, data_root);
-  setup.body = {.name = robot, .footprint = plan::Footprint(io::load_robot_description(urdf.string()).footprint_m)};
-  const plan::NavigatorSettings drives_with = default_scenario(robot, data_root).stack.navigation;
+  const Scenario scenario = default_scenario(robot, data_root);
+  setup.body = {.name = robot,
+                .footprint = plan::Footprint(load_robot(robot, data_root, scenario.mounts).description.footprint_m)};
+  const plan::NavigatorSettings& drives_with = scenario.stack.navigation;
   setup.settings.costmap = drives_with.costmap;
   setup.settings.allow_unknown = drives_with.costmap.allow_unknown;
   setup.settings.routes = drives_with.global_planner.family;

@@ -90,9 +90,8 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
     if (site.empty()) site = scenario.world;
     if (lidar.empty()) of_run = LidarPreset{.lidar = scenario.sensors.lidar, .as_built = scenario.as_built.lidar};
     if (source.path_name.empty()) source.path_name = "truth";
-    const std::filesystem::path urdf = find_robot(scenario.robot, find_data_root(*scenario_file));
     source.T_body_lidar =
-        io::load_mounted_robot(urdf.string(), sensor_mounts(scenario.mounts)).description.T_body("lidar");
+        load_robot(scenario.robot, find_data_root(*scenario_file), scenario.mounts).description.T_body("lidar");
   }
   if (site.empty()) throw InputError("--site: required for a log that is not of patrol run");
   if (source.path_name.empty()) throw InputError("--trajectory: required for a log that is not of patrol run");

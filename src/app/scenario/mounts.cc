@@ -5,12 +5,15 @@
 #include <sstream>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "app/scenario/data_folders.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "core/text.h"
+#include "io/urdf.h"
 #include "io/yaml/settings_yaml.h"
 
 namespace patrol::app {
@@ -80,6 +83,20 @@ void check_preset(const MountSettings& mount) {
   if (std::ranges::find(presets.names, mount.preset) == presets.names.end())
     throw InputError(
         fmt::format("{}.preset = {}: must be one of {}", mount.location, mount.preset, join(presets.names, ", ")));
+}
+
+/// Returns the mounts for the reader of URDF files.
+std::vector<io::SensorMount> sensor_mounts(const std::vector<MountSettings>& mounts) {
+  std::vector<io::SensorMount> result;
+  for (std::size_t i = 0; i < mounts.size(); ++i) {
+    const MountSettings& mount = mounts[i];
+    result.push_back({.frame = mount.frame,
+                      .parent = mount.parent,
+                      .position_m = {mount.x_m, mount.y_m, mount.z_m},
+                      .rpy_rad = kDegree * Eigen::Vector3d(mount.roll_deg, mount.pitch_deg, mount.yaw_deg),
+                      .location = mount.location.empty() ? fmt::format("mounts.{}", i) : mount.location});
+  }
+  return result;
 }
 
 /// Returns whether a key is `path` or one below it.
@@ -185,17 +202,11 @@ std::vector<MountSettings> merge_mounts(std::vector<MountSettings> of_robot, con
   return of_robot;
 }
 
-std::vector<io::SensorMount> sensor_mounts(const std::vector<MountSettings>& mounts) {
-  std::vector<io::SensorMount> result;
-  for (std::size_t i = 0; i < mounts.size(); ++i) {
-    const MountSettings& mount = mounts[i];
-    result.push_back({.frame = mount.frame,
-                      .parent = mount.parent,
-                      .position_m = {mount.x_m, mount.y_m, mount.z_m},
-                      .rpy_rad = kDegree * Eigen::Vector3d(mount.roll_deg, mount.pitch_deg, mount.yaw_deg),
-                      .location = mount.location.empty() ? fmt::format("mounts.{}", i) : mount.location});
-  }
-  return result;
+LoadedRobot load_robot(const std::string& name, const std::filesystem::path& data_root,
+                       const std::vector<MountSettings>& mounts) {
+  std::filesystem::path urdf = find_robot(name, data_root);
+  io::MountedRobot robot = io::load_mounted_robot(urdf.string(), sensor_mounts(mounts));
+  return {.urdf_file = std::move(urdf), .urdf = std::move(robot.urdf), .description = std::move(robot.description)};
 }
 
 }  // namespace patrol::app

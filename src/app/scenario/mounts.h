@@ -8,7 +8,7 @@
 
 #include "app/scenario/scenario.h"
 #include "core/error.h"
-#include "io/urdf.h"
+#include "core/robot_description.h"
 
 namespace patrol::app {
 
@@ -25,8 +25,17 @@ void mount_sensor(const MountSettings& mount, sim::SensorSuiteSettings& sensors)
 /// Returns the mounts of a robot with those of a scenario, which replace mounts of the same frame.
 std::vector<MountSettings> merge_mounts(std::vector<MountSettings> of_robot, const std::vector<MountSettings>& own);
 
-/// Returns the mounts for the reader of URDF files.
-std::vector<io::SensorMount> sensor_mounts(const std::vector<MountSettings>& mounts);
+/// Robot of `models` with its mounts.
+struct LoadedRobot {
+  std::filesystem::path urdf_file;
+  std::string urdf;  ///< content of the URDF with the mounts
+  RobotDescription description;
+};
+
+/// Loads a robot of `models` (`find_robot`) with mounts. Throws InputError with the known robots if there is none, and
+/// with the location of a mount that does not fit.
+LoadedRobot load_robot(const std::string& name, const std::filesystem::path& data_root,
+                       const std::vector<MountSettings>& mounts);
 
 /// Returns the node of a path below a node; undefined if there is none.
 YAML::Node find_node(const YAML::Node& document, const std::vector<std::string>& path);

@@ -165,9 +165,8 @@ bool has_uwb_anchors(const std::string& world, const std::filesystem::path& data
 /// Returns the robot with its mounts; none if it has no URDF.
 std::optional<RobotDescription> robot_of(const std::string& name, const std::filesystem::path& data_root,
                                          const std::vector<MountSettings>& mounts) {
-  const std::filesystem::path urdf = robot_file(name, ".urdf", data_root);
-  if (!std::filesystem::exists(urdf)) return std::nullopt;
-  return io::load_mounted_robot(urdf.string(), sensor_mounts(mounts)).description;
+  if (!std::filesystem::exists(robot_file(name, ".urdf", data_root))) return std::nullopt;
+  return load_robot(name, data_root, mounts).description;
 }
 
 /// Returns the file with the registration of a map to the site; none if there is none beside the map.
@@ -223,8 +222,8 @@ ScenarioFiles load_files(const Scenario& scenario, const std::filesystem::path& 
   LoadedSite site = load_site(scenario.world, data_root);
   files.world_xml = std::move(site.world_xml);
   files.site = std::move(site.settings);
-  files.robot_urdf = find_robot(scenario.robot, data_root);
-  io::MountedRobot robot = io::load_mounted_robot(files.robot_urdf.string(), sensor_mounts(scenario.mounts));
+  LoadedRobot robot = load_robot(scenario.robot, data_root, scenario.mounts);
+  files.robot_urdf = std::move(robot.urdf_file);
   files.robot_urdf_text = std::move(robot.urdf);
   files.robot = std::move(robot.description);
   sim::set_drive_type(scenario.wheel_drive, files.robot);
@@ -338,7 +337,11 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
 
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   refuse_world(file);
-  const std::filesystem::path data_root = find_data_root(file);
+  return load_scenario(file, overrides, find_data_root(file));
+}
+
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                       const std::filesystem::path& data_root) {
   Scenario named;
   io::SettingsReader::read_section({file.string(), overrides}, load_with_presets(file, overrides), "", named);
   const std::string robot = named.robot;

@@ -247,6 +247,10 @@ Scenario default_scenario(const std::string& robot, const std::filesystem::path&
 /// Throws InputError with file, line and key.
 Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
+/// Loads a scenario with the robots and worlds of a data root instead of that of the file.
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                       const std::filesystem::path& data_root);
+
 /// Formats every setting as YAML.
 std::string to_yaml(const Scenario& scenario);
 

@@ -105,6 +105,30 @@ TEST(CheckRobot, OnlyTheSensorsOfTheFirmwareAreOn) {
   EXPECT_TRUE(sensors.hall.enabled);
 }
 
+TEST(CheckRobot, APresetFileSetsTheLidarAndItsTolerances) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "mine.yaml";
+  test::write_bytes(file, "lidar: {preset: tim571, beams: 90}\nas_built: {noise_ratio: 0.5}\n");
+  const CheckRobot robot = load("wheeled", {"sensors.lidar.preset=" + file});
+  ASSERT_EQ(robot.lidars.size(), 1U);
+  EXPECT_EQ(robot.lidars[0].settings.preset, "tim571");
+  EXPECT_EQ(robot.lidars[0].settings.beams, 90);
+  EXPECT_EQ(robot.simulator.as_built.lidar.noise_ratio, 0.5);
+  EXPECT_EQ(load("wheeled", {"sensors.lidar.preset=tim571"}).simulator.as_built.lidar.range_offset_m, 0.06);
+}
+
+TEST(CheckRobot, AMountSwitchesItsSensorOnAndAppliesItsPreset) {
+  const CheckRobot robot = load("wheeled", {"mounts=[{frame: lidar_rear, x_m: -0.4, z_m: 0.4, preset: utm30lx}]"});
+  ASSERT_EQ(robot.lidars.size(), 2U);
+  EXPECT_EQ(robot.lidars[1].frame, "lidar_rear");
+  EXPECT_EQ(robot.lidars[1].settings.preset, "utm30lx");
+}
+
+TEST(CheckRobot, ASensorThatTheSettingsEnableAndTheRobotLacksIsRefused) {
+  EXPECT_THAT(error_of("wheeled", {"sensors.lidar3d.enabled=true"}),
+              testing::HasSubstr("patrol check: wheeled has no lidar3d"));
+}
+
 TEST(CheckRobot, AnUnknownRobotIsRefusedWithTheKnownOnes) {
   EXPECT_THAT(error_of("unknown", {}), testing::HasSubstr("(known: cart, quadruped, tracked, wheeled)"));
 }
