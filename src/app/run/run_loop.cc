@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -10,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/common/process_cost.h"
 #include "core/geometry/angles.h"
 #include "core/overloaded.h"
 #include "core/state/message_state.h"
@@ -44,8 +44,6 @@ constexpr Time kCommandTimeout = std::chrono::milliseconds(500);
 /// Message that is a command to the simulator's instruments.
 template <typename Message>
 concept InstrumentOrder = std::is_constructible_v<InstrumentCommand, Message>;
-
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Closed loop of simulator and stack: exchanges their messages, writes the log and notifies the observer.
 class ClosedLoop {
@@ -304,7 +302,7 @@ class ClosedLoop {
     outcome_.start = start_;
     outcome_.faults = simulator_.sensors().faults();
     outcome_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start_).count();
-    outcome_.cpu_s = cpu_seconds() - cpu_start_;
+    outcome_.cpu_s = process_seconds() - cpu_start_;
     outcome_.seconds_by_stage = stack_.seconds_by_stage();
     outcome_.calls_by_stage = stack_.calls_by_stage();
     for (const StageProfiler* part : {&simulator_.clock(), &std::as_const(profiler_)}) {
@@ -322,7 +320,7 @@ class ClosedLoop {
   }
 
   const std::chrono::steady_clock::time_point wall_start_ = std::chrono::steady_clock::now();
-  const double cpu_start_ = cpu_seconds();
+  const double cpu_start_ = process_seconds();
   sim::Simulator& simulator_;
   StackPort& stack_;
   RunObserver& observer_;

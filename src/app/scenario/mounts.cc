@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/scenario/data_folders.h"
+#include "app/scenario/lidar_preset.h"
 #include "core/error.h"
 #include "core/geometry/angles.h"
 #include "core/text.h"
@@ -46,15 +47,6 @@ void check_frame(const MountSettings& mount) {
                                join(known, ", ")));
 }
 
-/// Visitor that collects the names of the presets.
-struct PresetNames {
-  std::vector<std::string> names = {};
-  template <typename Value>
-  void operator()(const char* name, Value&, const Limits& limits = {}) {
-    if (std::string_view(name) == "preset") names = limits.allowed;
-  }
-};
-
 /// Settings of the lidar of a frame; nullptr for the frame of another sensor.
 LidarSettings* lidar_of(const std::string& frame, sim::SensorSuiteSettings& sensors) {
   LidarSettings* found = nullptr;
@@ -72,17 +64,15 @@ LidarSettings* lidar_of(const std::string& frame, sim::SensorSuiteSettings& sens
 void check_preset(const MountSettings& mount) {
   if (mount.preset.empty()) return;
   sim::SensorSuiteSettings sensors;
-  LidarSettings* lidar = lidar_of(mount.frame, sensors);
-  if (lidar == nullptr)
+  if (lidar_of(mount.frame, sensors) == nullptr)
     throw InputError(fmt::format("{}.preset = {}: only lidars have presets", mount.location, mount.preset));
-  PresetNames presets;
-  LidarSettings::fields(*lidar, presets);
-  std::erase_if(presets.names, [&](const std::string& name) {
+  std::vector<std::string> presets = lidar_preset_names();
+  std::erase_if(presets, [&](const std::string& name) {
     return (LidarSettings::of_preset(name).rings > 1) != (mount.frame == "lidar3d");
   });
-  if (std::ranges::find(presets.names, mount.preset) == presets.names.end())
+  if (std::ranges::find(presets, mount.preset) == presets.end())
     throw InputError(
-        fmt::format("{}.preset = {}: must be one of {}", mount.location, mount.preset, join(presets.names, ", ")));
+        fmt::format("{}.preset = {}: must be one of {}", mount.location, mount.preset, join(presets, ", ")));
 }
 
 /// Returns the mounts for the reader of URDF files.

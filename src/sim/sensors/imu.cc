@@ -22,12 +22,8 @@ double quantized(double value, double resolution) {
 ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uint64_t seed, const ImuErrors& errors)
     : site_(mj_name2id(&model, mjOBJ_SITE, "imu")),
       errors_(errors),
-      gyro_(make_triad(seed, kGyro, settings, model.opt.timestep, settings.gyro_noise_density_radps_per_sqrt_hz,
-                       settings.gyro_bias_std_radps, settings.gyro_bias_random_walk_radps_per_sqrt_s,
-                       settings.gyro_range_radps, settings.gyro_resolution_radps)),
-      accel_(make_triad(seed, kAccel, settings, model.opt.timestep, settings.accel_noise_density_mps2_per_sqrt_hz,
-                        settings.accel_bias_std_mps2, settings.accel_bias_random_walk_mps2_per_sqrt_s,
-                        settings.accel_range_mps2, settings.accel_resolution_mps2)) {
+      gyro_(make_triad(seed, kGyro, gyro_sheet(settings), model.opt.timestep)),
+      accel_(make_triad(seed, kAccel, accel_sheet(settings), model.opt.timestep)) {
   validate(settings, "sensors.imu");
   add_errors(errors.gyro, gyro_);
   add_errors(errors.accel, accel_);
@@ -35,9 +31,30 @@ ImuSensor::ImuSensor(const ImuSettings& settings, const mjModel& model, std::uin
 
 ImuErrors ImuSensor::constant_biases(const ImuSettings& settings, std::uint64_t seed) {
   ImuErrors errors;
-  errors.gyro.bias = make_triad(seed, kGyro, settings, 1.0, 0.0, settings.gyro_bias_std_radps, 0.0, 0.0, 0.0).bias;
-  errors.accel.bias = make_triad(seed, kAccel, settings, 1.0, 0.0, settings.accel_bias_std_mps2, 0.0, 0.0, 0.0).bias;
+  constexpr double kTick_s = 1.0;  // biases do not depend on it
+  errors.gyro.bias = make_triad(seed, kGyro, gyro_sheet(settings), kTick_s).bias;
+  errors.accel.bias = make_triad(seed, kAccel, accel_sheet(settings), kTick_s).bias;
   return errors;
+}
+
+ImuSensor::TriadSheet ImuSensor::gyro_sheet(const ImuSettings& settings) {
+  return {.noise_density = settings.gyro_noise_density_radps_per_sqrt_hz,
+          .bias_std = settings.gyro_bias_std_radps,
+          .bias_random_walk = settings.gyro_bias_random_walk_radps_per_sqrt_s,
+          .range = settings.gyro_range_radps,
+          .resolution = settings.gyro_resolution_radps,
+          .scale_error_std = settings.scale_error_std,
+          .misalignment_std_deg = settings.misalignment_std_deg};
+}
+
+ImuSensor::TriadSheet ImuSensor::accel_sheet(const ImuSettings& settings) {
+  return {.noise_density = settings.accel_noise_density_mps2_per_sqrt_hz,
+          .bias_std = settings.accel_bias_std_mps2,
+          .bias_random_walk = settings.accel_bias_random_walk_mps2_per_sqrt_s,
+          .range = settings.accel_range_mps2,
+          .resolution = settings.accel_resolution_mps2,
+          .scale_error_std = settings.scale_error_std,
+          .misalignment_std_deg = settings.misalignment_std_deg};
 }
 
 void ImuSensor::add_errors(const TriadErrors& errors, Triad& triad) {
@@ -46,8 +63,7 @@ void ImuSensor::add_errors(const TriadErrors& errors, Triad& triad) {
   triad.distortion += errors.distortion;
 }
 
-ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, const ImuSettings& settings, double tick_s,
-                                       double noise, double bias, double walk, double range, double resolution) {
+ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, const TriadSheet& sheet, double tick_s) {
   const std::string stream(name);
   const RandomStream constant(seed, stream + "/constant");
   Triad triad{.noise = RandomStream(seed, stream + "/noise"),
@@ -55,17 +71,17 @@ ImuSensor::Triad ImuSensor::make_triad(std::uint64_t seed, const char* name, con
               .distortion = Eigen::Matrix3d::Identity(),
               .bias = Eigen::Vector3d::Zero(),
               .bias_per_k = Eigen::Vector3d::Zero(),
-              .noise_std = noise / std::sqrt(tick_s),
-              .walk_std = walk * std::sqrt(tick_s),
-              .range = range,
-              .resolution = resolution};
-  const double misalignment_rad = to_rad(settings.misalignment_std_deg);
+              .noise_std = sheet.noise_density / std::sqrt(tick_s),
+              .walk_std = sheet.bias_random_walk * std::sqrt(tick_s),
+              .range = sheet.range,
+              .resolution = sheet.resolution};
+  const double misalignment_rad = to_rad(sheet.misalignment_std_deg);
   std::uint64_t draw = 0;
   for (int row = 0; row < 3; ++row) {
-    triad.bias[row] = bias * constant.normal(0, draw++);
+    triad.bias[row] = sheet.bias_std * constant.normal(0, draw++);
     for (int col = 0; col < 3; ++col) {
       triad.distortion(row, col) +=
-          (row == col ? settings.scale_error_std : misalignment_rad) * constant.normal(0, draw++);
+          (row == col ? sheet.scale_error_std : misalignment_rad) * constant.normal(0, draw++);
     }
   }
   return triad;

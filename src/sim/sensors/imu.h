@@ -40,8 +40,13 @@ class ImuSensor {
     Eigen::Vector3d bias_per_k;
     double noise_std, walk_std, range, resolution;
   };
-  static Triad make_triad(std::uint64_t seed, const char* name, const ImuSettings& settings, double tick_s,
-                          double noise, double bias, double walk, double range, double resolution);
+  /// Values of the settings for a triad, in its units.
+  struct TriadSheet {
+    double noise_density, bias_std, bias_random_walk, range, resolution, scale_error_std, misalignment_std_deg;
+  };
+  static TriadSheet gyro_sheet(const ImuSettings& settings);
+  static TriadSheet accel_sheet(const ImuSettings& settings);
+  static Triad make_triad(std::uint64_t seed, const char* name, const TriadSheet& sheet, double tick_s);
   static void add_errors(const TriadErrors& errors, Triad& triad);
   static Eigen::Vector3d measure(Triad& triad, const Eigen::Vector3d& truth, double temperature_rise_k,
                                  std::uint64_t tick);
