@@ -79,6 +79,20 @@ class FailingStack(unittest.TestCase):
             turn_s = -(-round(at_s * 1000) // 20) * 20 / 1000
             self.assert_verdict(out, done, 3, f"the stack was killed by signal 9 (Killed) at {turn_s:.3f} s")
 
+    def test_a_failed_run_is_scored_again_as_failed_and_fed_with_a_note(self):
+        text = AT.format(at_ns=500_000_000, action=DIES)
+        for limit_s, code, end in ((4.0, 3, "stack failed"), (0.4, 4, "time limit")):
+            out, done = self.run_stack(text, time_limit_s=limit_s)
+            self.assertEqual(done.returncode, code, done.stderr)
+            scored = subprocess.run([stack_runs.PATROL, "score", str(out)], cwd=stack_runs.SOURCE, capture_output=True,
+                                    text=True, timeout=120)
+            self.assertEqual(scored.returncode, code, scored.stdout)
+            verdict = done.stdout.splitlines()[0].split(": ", 1)[1]
+            self.assertIn(end, verdict)
+            self.assertEqual(scored.stdout.splitlines()[0].split(": ", 1)[1], verdict)
+            fed = stack_runs.feed(out, self.path / "fed")
+            self.assertIn(f"patrol: {out}: the run ended early ({end}: ", fed.stderr)
+
     def test_a_run_whose_stack_failed_cannot_be_verified(self):
         out, _ = self.run_until(1.0, DIES)
         done = stack_runs.verify(out)

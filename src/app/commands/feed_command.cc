@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -40,6 +41,10 @@ ExitCode feed_run(const FeedOptions& options) {
   if (std::filesystem::exists(incomplete_marker(fed.root)))
     fmt::print(stderr, "patrol: {}: incomplete run: fed up to its last message\n", fed.root.string());
   else require_whole_log(fed, "cannot be fed");
+  if (const std::optional<EarlyEnd> early = load_early_end(fed.junit()); early && fed.is_complete()) {
+    fmt::print(stderr, "patrol: {}: the run ended early ({}: {}): fed up to its end\n", fed.root.string(),
+               name_of(early->status), early->message);
+  }
   Scenario scenario = load_scenario(fed.scenario(), options.overrides);
   scenario.stack.command = options.stack.value_or("");  // never starts a command that a run directory names
   const std::filesystem::path data_root = find_data_root(fed.scenario());

@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "app/common/print_result.h"
 #include "app/common/progress_bar.h"
 #include "app/report/run_summary.h"
+#include "app/run/run_junit.h"
 #include "app/run/run_verdict.h"
 #include "app/scenario/data_folders.h"
 #include "app/scoring/relation_table.h"
@@ -45,9 +47,9 @@ ExitCode score_directory(const ScoreOptions& options) {
   }
   if (is_writable) io::save_metrics(directory.metrics(), metrics);
   const std::vector<CheckedExpectation> checks = check_expectations(scenario.expect, metrics);
-  // The log does not contain how the run ended: only the expectations count.
-  const RunVerdict verdict{.end = status_of(RunEnd::kMissionOver, checks),
-                           .message = "",
+  const std::optional<EarlyEnd> early = load_early_end(directory.junit());  // the log does not contain it
+  const RunVerdict verdict{.end = early ? early->status : status_of(RunEnd::kMissionOver, checks),
+                           .message = early ? early->message : "",
                            .metrics = std::move(metrics),
                            .checks = checks,
                            .events = {}};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,5 +23,15 @@ io::JunitSuite unfinished_suite(const std::string& name,
 /// EXECUTED).
 io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<std::string, std::string>>& properties,
                            const RunVerdict& verdict);
+
+/// End of a run before the end of its mission.
+struct EarlyEnd {
+  RunStatus status = RunStatus::kFailed;
+  std::string message;  ///< as in RunVerdict
+};
+
+/// Reads from the report of a run how it ended early. Returns nullopt for a run whose mission was over, and without a
+/// report.
+std::optional<EarlyEnd> load_early_end(const std::filesystem::path& junit_xml);
 
 }  // namespace patrol::app

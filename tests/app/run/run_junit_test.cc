@@ -107,5 +107,38 @@ TEST(RunJunit, ARunThatCrashedIsAnErrorAndNotAFailure) {
   EXPECT_THAT(xml, HasSubstr("crashed: signal 11"));
 }
 
+/// Status and message of a run's end as its report has them; "" for a run whose mission was over.
+std::string read_back(const RunOutcome& outcome, const std::vector<CheckedExpectation>& checks) {
+  const TemporaryFolder folder;
+  const io::Metrics metrics = {{"performance", {{"wall_s", 1.0}}}};
+  io::save_junit(folder / "junit.xml", {junit_suite("short", {}, verdict_of(outcome, {}, metrics, checks))});
+  const std::optional<EarlyEnd> early = load_early_end(folder / "junit.xml");
+  return early ? std::string(name_of(early->status)) + " | " + early->message : "";
+}
+
+TEST(LoadEarlyEnd, ReturnsStatusAndMessageOfEveryEarlyEnd) {
+  EXPECT_EQ(read_back(ended(RunEnd::kFall, 33.256), {}), "fall | the robot fell at 33.26 s");
+  EXPECT_EQ(read_back(ended(RunEnd::kTimeLimit, 120.0), {make_check(false)}), "time limit | 120 s");
+  RunOutcome failed = ended(RunEnd::kStackFailed, 1.0);
+  failed.stack_failure = "the stack failed at 1.000 s: fall: <none> & \"more\"";
+  EXPECT_EQ(read_back(failed, {}), "stack failed | the stack failed at 1.000 s: fall: <none> & \"more\"");
+  RunOutcome silent = ended(RunEnd::kStackSilent, 1.0);
+  silent.stack_failure = "the stack was silent at 1.000 s: no answer within 5 s";
+  EXPECT_EQ(read_back(silent, {}), "stack silent | the stack was silent at 1.000 s: no answer within 5 s");
+}
+
+TEST(LoadEarlyEnd, ReturnsNothingForAMissionThatIsOverAndWithoutAReport) {
+  EXPECT_EQ(read_back({}, {make_check(true), make_check(false)}), "");
+  EXPECT_FALSE(load_early_end("no/such/junit.xml").has_value());
+}
+
+TEST(LoadEarlyEnd, OfAReportWithoutAKnownStatusIsAFailure) {
+  const TemporaryFolder folder;
+  io::save_junit(folder / "junit.xml", {unfinished_suite("short", {})});
+  const std::optional<EarlyEnd> early = load_early_end(folder / "junit.xml");
+  ASSERT_TRUE(early.has_value());
+  EXPECT_EQ(early->status, RunStatus::kFailed);
+}
+
 }  // namespace
 }  // namespace patrol::app::run_junit_test
