@@ -17,7 +17,7 @@ struct Arrival {
   double heading_error_deg = 0.0;  ///< absolute value
 };
 
-/// All arrivals at one goal.
+/// All true arrivals at one goal (arrival_score.h). Reports that the truth contradicts are not arrivals.
 struct GoalError {
   std::string name;
   std::vector<Arrival> arrivals;
@@ -29,11 +29,11 @@ struct GoalError {
 
 /// Repeatability as in [Liu21, tab. 2]. A goal saved during teleoperation is compared with the robot's true pose at the
 /// time of saving, so the error contains map, localization and control. `given` goals (in map) are transformed to world
-/// by `T_world_map`.
+/// by `T_world_map`. Precondition: `T_world_body` is not empty.
 std::vector<GoalError> goal_errors(const std::vector<Event>& events, const std::vector<SavedGoal>& given,
                                    const Pose2& T_world_map, const Trajectory& T_world_body);
 
-/// Errors of all dockings relative to the surveyed docked pose.
+/// Errors of all dockings relative to the surveyed docked pose. Precondition: `T_world_body` is not empty.
 GoalError docking_error(const std::vector<Event>& events, const Pose2& T_world_docked, const Trajectory& T_world_body);
 
 }  // namespace patrol::score

@@ -47,6 +47,28 @@ TEST(GoalErrors, AGivenGoalIsMetWhereTheMapLiesInTheWorld) {
   EXPECT_NEAR(errors[0].arrivals[0].position_error_m, 1.0, 1e-12);
 }
 
+TEST(GoalErrors, AReportFarFromTheGoalIsNoArrival) {
+  const SavedGoal goal{.number = 1, .T_map_body = {0.0, 0.0, 0.0}, .accuracy_m = 0.2};
+  const auto num_arrivals = [&](double x_m) {
+    const Trajectory truth = {{1s, to_pose3({x_m, 0.0, 0.0})}, {2s, to_pose3({x_m, 0.0, 0.0})}};
+    const std::vector<Event> events = {event(EventKind::kGoalReached, "goal_1", 2s, 1)};
+    return goal_errors(events, {goal}, {}, truth).at(0).arrivals.size();
+  };
+  EXPECT_EQ(num_arrivals(1.19), 1U);
+  EXPECT_EQ(num_arrivals(1.21), 0U);
+  EXPECT_EQ(num_arrivals(32.0), 0U);
+}
+
+TEST(GoalErrors, AReportAfterTheLastTruePoseIsComparedWithIt) {
+  const SavedGoal goal{.number = 1, .T_map_body = {10.0, 0.0, 0.0}};
+  EXPECT_EQ(goal_errors({event(EventKind::kGoalReached, "goal_1", 4s, 1)}, {goal}, {}, truth()).at(0).arrivals.size(),
+            1U);
+}
+
+TEST(DockingError, AReportFarFromTheDockIsNoDocking) {
+  EXPECT_TRUE(docking_error({event(EventKind::kDocked, "", 2s, 1)}, {8.9, 0.0, 0.0}, truth()).arrivals.empty());
+}
+
 TEST(DockingError, CountsDockingsAndFailures) {
   const GoalError error = docking_error({event(EventKind::kDocked, "", 2s, 1), event(EventKind::kDockFailed, "", 3s)},
                                         {10.03, 0.0, 0.0}, truth());
