@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "app/run/external_stack.h"
+#include "app/run/checked_message.h"
 #include "io/ros/ros_messages.h"
 #include "link/link_error.h"
 #include "link/record_parser.h"

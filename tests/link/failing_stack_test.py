@@ -188,6 +188,12 @@ class FailingStack(unittest.TestCase):
             out, done = self.run_until(1.0, action)
             self.assert_verdict(out, done, 3, reason)
 
+    def test_an_event_whose_subject_is_not_utf_8(self):
+        event = ("e = turn.new('/events'); e.kind, e.subject = 'station_reached', 'ABCD'; data = e.encode(); "
+                 r"type(e).encode = lambda self: data.replace(b'ABCD', b'caf\xe9'); turn.publish('/events', e)")
+        out, done = self.run_until(1.0, event)
+        self.assert_verdict(out, done, 3, "the stack failed at 1.000 s: message on /events: subject is not UTF-8")
+
     def test_a_pose_with_the_time_of_the_wall_clock(self):
         stamp = "p = turn.client.type_of('/pose')(); p.header.stamp.sec = int(time.time()); turn.publish('/pose', p)"
         out, done = self.run_until(1.0, stamp)

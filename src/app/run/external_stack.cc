@@ -6,23 +6,15 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <iterator>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/run/compute_delay.h"
 #include "core/error.h"
-#include "core/frames.h"
-#include "core/site/site_registration.h"
-#include "io/files/one_line.h"
 #include "io/logs/topics.h"
-#include "io/ros/coordinate_limit.h"
-#include "io/ros/path_frames.h"
-#include "io/ros/ros_fields.h"
 #include "io/ros/ros_messages.h"
 #include "link/stack_client.h"
 
@@ -32,68 +24,9 @@ namespace {
 using link::LinkError;
 using link::LinkFault;
 
-constexpr std::chrono::seconds kTimeToEnd{2};         ///< of the process after the last turn
-constexpr std::chrono::milliseconds kTimeToDie{200};  ///< of a process whose connection has closed
-constexpr std::size_t kMaxNameBytes = 200;
-constexpr double kMinResolution_m = 1e-4;
+constexpr std::chrono::seconds kTimeToEnd{2};              ///< of the process after the last turn
+constexpr std::chrono::milliseconds kTimeToDie{200};       ///< of a process whose connection has closed
 constexpr Time kStampTolerance = std::chrono::seconds(1);  ///< of stamps before the start and after the turn
-
-bool has_finite_numbers(const stack::StackMessage& message) {
-  return std::visit([](const auto& content) { return io::has_finite_numbers(content); }, message);
-}
-
-/// Returns whether the cells of a map have a size of at least 0.1 mm.
-bool has_resolution(const stack::StackMessage& message) {
-  const auto* update = std::get_if<MapUpdate>(&message);
-  return update == nullptr || update->map.geometry().resolution_m >= kMinResolution_m;
-}
-
-double max_coordinate_m(const stack::StackMessage& message) {
-  return std::visit([](const auto& content) { return io::max_coordinate_m(content); }, message);
-}
-
-/// Returns the first cell of a map that is neither unknown (-1) nor a probability in percent.
-std::optional<int> invalid_cell(const stack::StackMessage& message) {
-  const auto* update = std::get_if<MapUpdate>(&message);
-  if (update == nullptr) return std::nullopt;
-  const auto& cells = update->map.values();
-  const auto invalid = std::ranges::find_if(cells, [](int cell) { return cell < -1 || cell > 100; });
-  return invalid == cells.end() ? std::nullopt : std::optional<int>(*invalid);
-}
-
-/// Returns whether the rotations of a message are unit quaternions. `content`: of the message; its planar poses no
-/// longer have them.
-bool has_unit_quaternions(const stack::StackMessage& content, std::string_view cdr) {
-  return std::visit([&]<typename Content>(const Content&) { return io::has_unit_quaternions<Content>(cdr); }, content);
-}
-
-/// Returns the stamps of a message: that of its header and, of a trajectory, those of its poses.
-std::vector<Time> stamps_of(const io::MessageHeader& header, const stack::StackMessage& content) {
-  std::vector<Time> stamps = {header.stamp()};
-  if (const auto* trajectory = std::get_if<TrajectoryEstimate>(&content))
-    std::ranges::transform(trajectory->T_map_body, std::back_inserter(stamps), &StampedPose::stamp);
-  return stamps;
-}
-
-/// Returns the frame that Patrol writes in a message of a type, by index of the type.
-std::vector<std::string> frames_of_types() {
-  return []<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
-    return std::vector<std::string>{
-        io::header_of(io::encode(std::variant_alternative_t<kIndex, stack::StackMessage>{})).frame...};
-  }
-  (std::make_index_sequence<std::variant_size_v<stack::StackMessage>>{});
-}
-
-/// Returns the frame of the content of a message if it is fixed in the site or in the map; nullopt for frames of the
-/// robot.
-std::optional<std::string> expected_frame(const stack::StackMessage& content) {
-  static const std::vector<std::string> frames = frames_of_types();
-  const std::string& frame = frames[content.index()];
-  const bool is_fixed = frame == frame_id::kMap || frame == frame_id::kOdom || frame == frame_id::kSite;
-  return is_fixed ? std::optional(frame) : std::nullopt;
-}
-
-std::string quoted_name(const std::string& name) { return io::on_one_line(io::first_bytes(name, kMaxNameBytes)); }
 
 }  // namespace
 
@@ -320,77 +253,6 @@ double ExternalStack::cpu_seconds() {
       LinkFault::kClosed,
       fmt::format("CPU time of the process that connected ({}) cannot be read: stack.compute.model = measured needs it",
                   id));
-}
-
-std::optional<std::string> unexpected_frame(const PublishedMessage& message) {
-  if (!message.content) return std::nullopt;
-  const std::optional<std::string> expected = expected_frame(*message.content);
-  if (!expected) return std::nullopt;
-  std::vector<std::string> frames = {io::header_of(message.cdr).frame};
-  if (std::holds_alternative<Path>(*message.content) || std::holds_alternative<TrajectoryEstimate>(*message.content))
-    frames = io::path_frames_of(message.cdr);
-  for (std::string& frame : frames) {
-    if (frame.starts_with('/')) frame.erase(0, 1);  // ROS 1
-    if (!frame.empty() && frame != *expected) return frame;
-  }
-  return std::nullopt;
-}
-
-PublishedMessage checked_message(link::PublishedMessage message, const StampRange& stamps) {
-  const auto refuse = [name = quoted_name(message.topic)](const std::string& reason) {
-    throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", name, reason));
-  };
-  if (!message.topic.starts_with('/') || message.topic.size() > kMaxNameBytes || !io::is_utf8(message.topic) ||
-      io::has_control_characters(message.topic)) {
-    refuse("name of a topic must begin with / and have at most 200 printable characters in UTF-8");
-  }
-  if (message.topic.starts_with("/link/") || message.topic.starts_with("/recorded/") ||
-      !io::is_stack_output(message.topic))
-    refuse("only the simulator writes this topic");
-  const std::optional<io::TopicInfo> info = io::find_topic(message.topic);
-  if (!info) {
-    for (const std::string* text : {&message.type, &message.definition}) {
-      if (!io::is_utf8(*text)) refuse("type and definition must be UTF-8");
-    }
-    try {
-      io::check_ros_message(message.type, message.definition, message.cdr);
-    } catch (const InputError& error) {
-      refuse(error.what());
-    }
-    return {.content = {},
-            .topic = std::move(message.topic),
-            .type = std::move(message.type),
-            .definition = std::move(message.definition),
-            .cdr = std::move(message.cdr)};
-  }
-  if (message.type != info->type) refuse(fmt::format("type is {}: must be {}", quoted_name(message.type), info->type));
-  PublishedMessage checked{.content = {}, .topic = std::move(message.topic), .cdr = std::move(message.cdr)};
-  try {
-    checked.content = io::decode_as<stack::StackMessage>(checked.topic, checked.cdr);
-  } catch (const InputError& error) {
-    refuse(error.what());
-  }
-  if (!checked.content) return checked;
-  const io::MessageHeader header = io::header_of(checked.cdr);
-  if (header.nanoseconds >= 1'000'000'000U)
-    refuse(fmt::format("nanosec of the stamp is {}: must be below 1000000000", header.nanoseconds));
-  for (const Time stamp : stamps_of(header, *checked.content)) {
-    if (stamp >= stamps.from && stamp <= stamps.to) continue;
-    refuse(fmt::format("stamp is {:.3f} s: must be in simulated time, from {:.3f} to {:.3f} s", to_seconds(stamp),
-                       to_seconds(stamps.from), to_seconds(stamps.to)));
-  }
-  if (!has_finite_numbers(*checked.content)) refuse("contains a number that is not finite");
-  if (const double coordinate_m = max_coordinate_m(*checked.content); coordinate_m > io::kMaxCoordinate_m) {
-    refuse(
-        fmt::format("contains a position with a coordinate of {:g} m: must be within {:.0f} m of the origin of its "
-                    "frame",
-                    coordinate_m, io::kMaxCoordinate_m));
-  }
-  if (!has_resolution(*checked.content)) refuse("resolution must be at least 0.0001 m");
-  if (const std::optional<int> cell = invalid_cell(*checked.content))
-    refuse(fmt::format("a cell of the map is {}: must be in [-1, 100]", *cell));
-  if (!has_unit_quaternions(*checked.content, checked.cdr)) refuse("contains a quaternion whose norm is not 1");
-  return checked;
 }
 
 }  // namespace patrol::app

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/common/temporary_folder.h"
+#include "app/run/checked_message.h"
 #include "app/run/stack_port.h"
 #include "link/link_error.h"
 #include "link/protocol.h"
@@ -37,11 +38,6 @@ struct StackConnection {
   std::filesystem::path output;          ///< file for the output of a process that Patrol starts
   std::string output_name = {};          ///< place of that output in error texts; empty: the name of the file
   std::function<bool()> is_interrupted;  ///< polled while Patrol waits
-};
-
-/// Stamps that the messages of a stack may have, both included.
-struct StampRange {
-  Time from = Time::min(), to = Time::max();
 };
 
 /// A stack in another process, by the turn protocol (src/link/README.md). Its messages are checked before the log and
@@ -92,14 +88,5 @@ class ExternalStack final : public StackPort {
   std::atomic<bool> is_abandoned_ = false;  ///< the run ends before the stack has connected
   std::future<void> connecting_;  ///< until the stack has connected; last, because its thread uses the other members
 };
-
-/// Returns a message of a stack in another process with its content. Throws link::LinkError (kInvalid) if a topic that
-/// Patrol knows has another type, invalid content or a stamp outside of the range, or is one that only the simulator
-/// writes.
-PublishedMessage checked_message(link::PublishedMessage message, const StampRange& stamps = {});
-
-/// Returns the frame of a message in `map`, `odom` or `site` if its header or, in a path, that of a pose names another
-/// one; nullopt without a difference. An empty frame is none.
-std::optional<std::string> unexpected_frame(const PublishedMessage& message);
 
 }  // namespace patrol::app

@@ -1,4 +1,4 @@
-#include "app/run/external_stack.h"
+#include "app/run/checked_message.h"
 
 #include <cmath>
 #include <cstdint>
@@ -18,7 +18,7 @@
 #include "link/link_error.h"
 #include "tests/io/sample_messages.h"
 
-namespace patrol::app::external_stack_test {
+namespace patrol::app::checked_message_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -68,6 +68,29 @@ TEST(CheckedMessage, RefusesNaNInAPlanAndInAConfidence) {
   confidence.confidence = kNan;
   EXPECT_EQ(refusal_of(published(confidence)),
             "message on /localization_confidence: contains a number that is not finite");
+}
+
+TEST(CheckedMessage, RefusesTextThatIsNotUtf8ByItsName) {
+  const auto event = [](const std::string& kind, const std::string& subject, const std::string& text) {
+    Event one{.subject = subject, .text = text};
+    set_kind(one, kind);
+    return refusal_of(published(one));
+  };
+  EXPECT_EQ(event("my kind", "B\xc3\xa4r", "a text"), "");
+  EXPECT_EQ(event("k\xff", "", ""), "message on /events: kind is not UTF-8");
+  EXPECT_EQ(event("station_reached", "caf\xe9", ""), "message on /events: subject is not UTF-8");
+  EXPECT_EQ(event("station_reached", "", "\xc0\x80"), "message on /events: text is not UTF-8");
+  LiningResult lining;
+  lining.lines = {{.ring = 1, .name = "9-\xff"}};
+  EXPECT_EQ(refusal_of(published(lining)), "message on /inspection/lining: name of a line is not UTF-8");
+  lining.station = "\xff";
+  EXPECT_EQ(refusal_of(published(lining)), "message on /inspection/lining: station is not UTF-8");
+  WaterResult water;
+  water.station = "\xff";
+  EXPECT_EQ(refusal_of(published(water)), "message on /inspection/water: station is not UTF-8");
+  CalibrationEstimate calibration;
+  calibration.values = {{.name = "\xff"}};
+  EXPECT_EQ(refusal_of(published(calibration)), "message on /calibration: name of a value is not UTF-8");
 }
 
 TEST(CheckedMessage, RefusesAMapOfResolution0ByItsResolution) {
@@ -238,4 +261,4 @@ TEST(UnexpectedFrame, IsNamedForThePosesOfAPath) {
 }
 
 }  // namespace
-}  // namespace patrol::app::external_stack_test
+}  // namespace patrol::app::checked_message_test
