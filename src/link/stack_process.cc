@@ -154,8 +154,9 @@ StackProcess::~StackProcess() { stop({}); }
 
 bool StackProcess::is_running() { return !wait_for({}); }
 
-void StackProcess::stop(std::chrono::steady_clock::duration timeout) {
-  if (!wait_for(timeout)) {
+bool StackProcess::stop(std::chrono::steady_clock::duration timeout) {
+  const bool has_ended = wait_for(timeout);
+  if (!has_ended) {
     ::kill(-id_, SIGTERM);
     ::kill(-id_, SIGCONT);
     wait_for(kTimeToEnd);
@@ -163,6 +164,7 @@ void StackProcess::stop(std::chrono::steady_clock::duration timeout) {
   ::kill(-id_, SIGKILL);  // also the processes that the stack has started
   while (!status_) wait_for(kTimeToEnd);
   output_.finish();
+  return has_ended;
 }
 
 bool StackProcess::wait_for(std::chrono::steady_clock::duration timeout) {
@@ -177,6 +179,8 @@ bool StackProcess::wait_for(std::chrono::steady_clock::duration timeout) {
   }
   return true;
 }
+
+bool StackProcess::has_failed() { return !is_running() && *status_ != 0; }
 
 std::string StackProcess::end_text() {
   if (is_running()) return "";

@@ -48,8 +48,11 @@ class StackProcess {
 
   pid_t id() const { return id_; }
   bool is_running();
-  /// Waits for the end of the process, for at most `timeout`, then asks it to end, and kills it.
-  void stop(std::chrono::steady_clock::duration timeout);
+  /// Waits for the end of the process, for at most `timeout`, then asks it to end, and kills it. Returns whether it
+  /// ended within `timeout`.
+  bool stop(std::chrono::steady_clock::duration timeout);
+  /// Returns whether it has ended by a signal or with another code than 0.
+  bool has_failed();
   /// Description of the end: "exited with code 1" or "was killed by signal 9 (Killed)"; empty while it runs.
   std::string end_text();
 

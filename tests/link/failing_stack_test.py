@@ -194,6 +194,14 @@ class FailingStack(unittest.TestCase):
         out, done = self.run_until(1.0, event)
         self.assert_verdict(out, done, 3, "the stack failed at 1.000 s: message on /events: subject is not UTF-8")
 
+    def test_an_end_of_the_process_after_the_run_is_a_warning(self):
+        for end, text in (("raise SystemExit(3)", "exited with code 3"),
+                          (DIES, "was killed by signal 9 (Killed)"),
+                          ("time.sleep(1000)", "did not exit within 2 s")):
+            _, done = self.run_stack(AT.format(at_ns=0, action="pass") + end, time_limit_s=0.3)
+            self.assertEqual(done.returncode, 4, done.stderr)
+            self.assertEqual(done.stderr, f"patrol: warning: the stack {text} after the run; its output: stack.log\n")
+
     def test_a_pose_with_the_time_of_the_wall_clock(self):
         stamp = "p = turn.client.type_of('/pose')(); p.header.stamp.sec = int(time.time()); turn.publish('/pose', p)"
         out, done = self.run_until(1.0, stamp)

@@ -79,7 +79,8 @@ TEST_F(StackProcessTest, OutputGoesToTheFileAndTheVariablesToTheProcess) {
   start.environment = {{"GREETING", "hello there"}};
   StackProcess process(start);
   process.write_output_to(output_);
-  process.stop(5s);
+  EXPECT_TRUE(process.stop(30s));
+  EXPECT_TRUE(process.has_failed());
   EXPECT_EQ(process.end_text(), "exited with code 7");
   EXPECT_EQ(output(), "hello there\nit's\n");
 }
@@ -88,7 +89,9 @@ TEST_F(StackProcessTest, EndTextIsEmptyWhileItRunsAndNamesTheSignalAfterwards) {
   StackProcess process(settings({"sleep", "1000"}));
   EXPECT_TRUE(process.is_running());
   EXPECT_EQ(process.end_text(), "");
-  process.stop({});
+  EXPECT_FALSE(process.has_failed());
+  EXPECT_FALSE(process.stop({}));
+  EXPECT_TRUE(process.has_failed());
   EXPECT_EQ(process.end_text(), "was killed by signal 15 (Terminated)");
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 #include <utility>
@@ -65,7 +66,23 @@ ExternalStack::~ExternalStack() {
   const auto time_to_end = server_ ? kTimeToEnd : std::chrono::seconds{0};
   server_.reset();
   close_listener();
-  if (process_) process_->stop(time_to_end);
+  if (!process_) return;
+  const bool has_ended = process_->stop(time_to_end);
+  if (is_finished_) warn_of_end(has_ended);
+}
+
+/// Warns of a process that did not end well after its last turn. The result of the run stands.
+void ExternalStack::warn_of_end(bool has_ended) {
+  if (has_ended && !process_->has_failed()) return;
+  const std::string end =
+      has_ended ? process_->end_text() : fmt::format("did not exit within {} s", kTimeToEnd.count());
+  std::fputs(fmt::format("patrol: warning: the stack {} after the run; its output: {}\n", end, output_name()).c_str(),
+             stderr);  // does not throw, in a destructor
+}
+
+/// Returns the place of the output of the process.
+std::string ExternalStack::output_name() const {
+  return connection_.output_name.empty() ? connection_.output.filename().string() : connection_.output_name;
 }
 
 /// Closes the socket for connections, and removes its name.
@@ -188,7 +205,9 @@ std::vector<PublishedMessage> ExternalStack::finish(Time now) {
   ensure_connected();
   cpu_start_s_.reset();  // the last messages have no delay
   begin_turn(now, true);
-  return end_turn().messages;
+  std::vector<PublishedMessage> messages = end_turn().messages;
+  is_finished_ = true;
+  return messages;
 }
 
 /// Throws the error again, with a sentence about the stack.
@@ -203,8 +222,7 @@ void ExternalStack::fail(const LinkError& error, const std::string& when) {
       while (process_->is_running() && std::chrono::steady_clock::now() < deadline) ::usleep(1000);
       if (const std::string end = process_->end_text(); !end.empty()) text = fmt::format("the stack {} {}", end, when);
     }
-    const std::string& name = connection_.output_name;
-    text += fmt::format("; its output: {}", name.empty() ? connection_.output.filename().string() : name);
+    text += fmt::format("; its output: {}", output_name());
   }
   throw LinkError(error.fault(), text);
 }

@@ -70,6 +70,8 @@ class ExternalStack final : public StackPort {
   void warn_of_topics(const std::vector<std::string>& wanted) const;
   void warn_of_frame(const PublishedMessage& message);
   void warn_of_instrument(const PublishedMessage& message);
+  void warn_of_end(bool has_ended);
+  std::string output_name() const;
 
   StackDocuments documents_;
   StackConnection connection_;
@@ -85,6 +87,7 @@ class ExternalStack final : public StackPort {
   std::optional<double>
       cpu_start_s_;  ///< CPU time of the stack at the start of the turn; nullopt unless it delays the messages
   double wait_s_ = 0.0;
+  bool is_finished_ = false;                ///< the stack has ended its last turn
   std::atomic<bool> is_abandoned_ = false;  ///< the run ends before the stack has connected
   std::future<void> connecting_;  ///< until the stack has connected; last, because its thread uses the other members
 };
