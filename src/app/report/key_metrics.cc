@@ -25,17 +25,21 @@ class KeyMetricTable {
   std::vector<KeyMetric> take() { return std::move(rows_); }
 
   /// Adds the number of a list's entries for which `holds` is true, with the names of others, for which it is false.
+  /// Adds nothing if no entry was measured.
   template <typename Holds>
   void add_count(const std::string& label, const std::string& list, const Holds& holds) {
     constexpr std::size_t kMaxNames = 3;
     if (!metrics_.contains(list) || metrics_[list].empty()) return;
     int num = 0;
+    bool was_measured = false;
     std::vector<std::string> others;
     for (const io::Metrics& entry : metrics_[list]) {
       const std::optional<bool> is_true = holds(entry);
+      was_measured = was_measured || is_true;
       num += is_true.value_or(false) ? 1 : 0;
       if (is_true == false) others.push_back(entry.value("name", ""));
     }
+    if (!was_measured) return;
     const std::size_t num_more = others.size() - std::min(others.size(), kMaxNames);
     others.resize(others.size() - num_more);
     const std::string more = num_more > 0 ? fmt::format(" and {} more", num_more) : "";
@@ -106,9 +110,8 @@ void add_found(KeyMetricTable& table, const std::string& label, const std::strin
 void add_mission(KeyMetricTable& table) {
   const double leaks = table.at("inspection.leaks").value_or(0.0),
                alarms = table.at("inspection.false_alarms").value_or(0.0);
-  if (leaks + alarms > 0.0) {
-    table.add("Leaks found",
-              {fmt::format("{:.0f} of {:.0f}", table.at("inspection.leaks_found").value_or(0.0), leaks), ""},
+  if (const auto found = table.at("inspection.leaks_found"); found && leaks + alarms > 0.0) {
+    table.add("Leaks found", {fmt::format("{:.0f} of {:.0f}", *found, leaks), ""},
               fmt::format("{:.0f} false alarms", alarms));
   }
   add_found(table, "Moved rings found", "inspection.lining", "moved_rings", "false_findings", "false findings");

@@ -64,8 +64,19 @@ TEST(RunSummary, NamesTheFirstStationsThatWereNotReached) {
   for (const char* name : {"a", "b", "c", "d", "e"})
     verdict.metrics["stations"].push_back({{"name", name}, {"reached", false}});
   EXPECT_THAT(summary(), HasSubstr("0 of 5  not: a, b, c and 2 more\n"));
-  for (io::Metrics& station : verdict.metrics["stations"]) station["reached"] = nullptr;  // not measured
-  EXPECT_THAT(summary(), HasSubstr("0 of 5\n"));
+  verdict.metrics["stations"][0]["reached"] = nullptr;
+  EXPECT_THAT(summary(), HasSubstr("0 of 5  not: b, c, d and 1 more\n"));
+}
+
+TEST(RunSummary, HasNoRowsOfWhatWasNotMeasured) {
+  RunVerdict verdict = verdict_with({});
+  for (io::Metrics& station : verdict.metrics["stations"]) station["reached"] = nullptr;
+  verdict.metrics["goals"][0]["arrivals"] = verdict.metrics["goals"][0]["failed"] = nullptr;
+  verdict.metrics["docking"]["arrivals"] = verdict.metrics["docking"]["failed"] = nullptr;
+  verdict.metrics["inspection"]["leaks_found"] = verdict.metrics["inspection"]["false_alarms"] = nullptr;
+  const std::string text = run_summary("site/patrol, seed 1", verdict, "out/run", TextStyle::kPlain);
+  for (const char* row : {"Stations", "Goals", "Dockings", "Leaks"}) EXPECT_THAT(text, Not(HasSubstr(row)));
+  EXPECT_THAT(text, HasSubstr("Moved rings found"));
 }
 
 TEST(RunSummary, BeginsWithTheStatusAndTheNumberOfExpectations) {
