@@ -63,9 +63,10 @@ LiningScore lining_score(const std::vector<LiningResult>& results, const LiningG
   double squares = 0.0;
   int held = 0;
   for (const LiningResult& result : results) {
-    ++score.stations;
+    const int num_stations = result.station.empty() ? 0 : 1;
+    score.stations += num_stations;
     if (!result.is_registered) continue;
-    ++score.registered;
+    score.registered += num_stations;
     add_rings(result, truth, to_pose3(map.at(result.stamp).T_site_map), displacement_m, still_m, score);
     for (const LiningCell& cell : result.cells) {
       const double error_m = cell.inward_m - truth.inward_m(cell.ring, cell.clock_deg);

@@ -55,7 +55,8 @@ struct LiningScore {
 
 /// Evaluates the findings of all stations, placed in site as the robot places them. A ring counts as moved when its
 /// peak displacement is at least `displacement_m`, and a finding is false when it is below `still_m`. Between the two
-/// limits, a finding and its absence are both correct.
+/// limits, a finding and its absence are both correct. A result without the name of a station is evaluated, but not
+/// counted as one.
 LiningScore lining_score(const std::vector<LiningResult>& results, const LiningGroundTruth& truth, const MapInSite& map,
                          double displacement_m = 0.0025, double still_m = 0.0015);
 

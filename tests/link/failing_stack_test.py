@@ -202,6 +202,14 @@ class FailingStack(unittest.TestCase):
             self.assertEqual(done.returncode, 4, done.stderr)
             self.assertEqual(done.stderr, f"patrol: warning: the stack {text} after the run; its output: stack.log\n")
 
+    def test_an_event_with_an_unknown_subject_is_a_warning(self):
+        event = ("e = turn.new('/events'); e.kind, e.subject = 'station_reached', 'valve_well_zero'; "
+                 "e.pose.orientation.w = 1.0; turn.publish('/events', e)")
+        _, done = self.run_until(1.0, event, time_limit_s=1.5)
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertRegex(done.stderr, r"\Apatrol: warning: station_reached with subject valve_well_zero is not scored: "
+                                      r"stations of the run: \w+, .*\n\Z")
+
     def test_a_pose_with_the_time_of_the_wall_clock(self):
         stamp = "p = turn.client.type_of('/pose')(); p.header.stamp.sec = int(time.time()); turn.publish('/pose', p)"
         out, done = self.run_until(1.0, stamp)

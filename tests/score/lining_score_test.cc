@@ -56,6 +56,15 @@ TEST(LiningScore, RingPushedBy6mmAndReportedWith7IsFoundWithAnErrorOf1) {
   EXPECT_NEAR(score.max_position_error_m, 0.5, 1e-12);  // 0.3 aside, 0.4 down
 }
 
+TEST(LiningScore, AResultWithoutAStationIsNotCountedAsOneAndItsFindingsAreEvaluated) {
+  LiningResult nameless = result({finding(4, 0.006)});
+  nameless.station.clear();
+  const LiningScore score = lining_score({nameless, result({})}, truth(), {});
+  EXPECT_EQ(score.stations, 1);
+  EXPECT_EQ(score.registered, 1);
+  EXPECT_EQ(score.false_findings, 1);
+}
+
 TEST(LiningScore, MovedRingInViewWithoutAFindingIsMissedAndOneOutOfViewIsNot) {
   const LiningScore score = lining_score({result({}, {cell(3, 0.006, 0.001)})}, truth(), {});
   EXPECT_EQ(score.moved_rings, 1);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
@@ -193,6 +194,7 @@ StackAnswer ExternalStack::end_turn() {
     for (const PublishedMessage& message : answer.messages) {
       warn_of_frame(message);
       warn_of_instrument(message);
+      warn_of_subject(message);
     }
     answer.delay = delay_of(settings_.compute, cpu_start_s_ ? cpu_seconds() - *cpu_start_s_ : 0.0);
     return answer;
@@ -259,6 +261,13 @@ void ExternalStack::warn_of_frame(const PublishedMessage& message) {
 void ExternalStack::warn_of_instrument(const PublishedMessage& message) {
   if (!documents_.unanswered.contains(message.topic) || !warned_.insert(message.topic).second) return;
   fmt::print(stderr, "patrol: warning: command on {} has no effect: the robot has no such instrument\n", message.topic);
+}
+
+void ExternalStack::warn_of_subject(const PublishedMessage& message) {
+  const Event* event = message.content ? std::get_if<Event>(&*message.content) : nullptr;
+  if (event == nullptr || !documents_.subjects) return;
+  if (const std::string warning = documents_.subjects->warning_of(*event); !warning.empty())
+    fmt::print(stderr, "patrol: warning: {}\n", warning);
 }
 
 /// CPU time of the process that has connected, with all its threads, since its start. It may be a child of the process

@@ -13,6 +13,7 @@
 
 #include "app/common/temporary_folder.h"
 #include "app/run/checked_message.h"
+#include "app/run/event_subjects.h"
 #include "app/run/stack_port.h"
 #include "link/link_error.h"
 #include "link/protocol.h"
@@ -30,6 +31,7 @@ struct StackDocuments {
   std::string known_map;                           ///< encoded message on /site_map; empty: the robot builds a map
   std::vector<io::McapChannel> recorded = {};      ///< topics of a recorded log beside those that Patrol knows
   std::set<std::string> unanswered = {};           ///< topics of commands to instruments that the robot lacks
+  std::optional<EventSubjects> subjects = {};      ///< of the scored events; nullopt: not known, of a recorded log
 };
 
 /// Connection to a stack in another process.
@@ -70,6 +72,7 @@ class ExternalStack final : public StackPort {
   void warn_of_topics(const std::vector<std::string>& wanted) const;
   void warn_of_frame(const PublishedMessage& message);
   void warn_of_instrument(const PublishedMessage& message);
+  void warn_of_subject(const PublishedMessage& message);
   void warn_of_end(bool has_ended);
   std::string output_name() const;
 

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -57,6 +58,13 @@ std::set<std::string> topics_without_instrument(const sim::SensorSuiteSettings& 
   return topics;
 }
 
+EventSubjects subjects_of(const ScenarioFiles& files) {
+  std::vector<std::string> stations, goals;
+  for (const Station& station : files.route.stations) stations.push_back(station.name);
+  for (const SavedGoal& goal : files.goals) goals.push_back(fmt::format("goal_{}", goal.number));
+  return {std::move(stations), std::move(goals)};
+}
+
 }  // namespace
 
 Scenario documented_scenario(const Scenario& scenario) {
@@ -100,7 +108,8 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
       .static_transforms = io::encode(io::sensor_mounts(files.robot)),
       .known_map = {},
       .recorded = {},
-      .unanswered = topics_without_instrument(scenario.sensors, files.robot)};
+      .unanswered = topics_without_instrument(scenario.sensors, files.robot),
+      .subjects = subjects_of(files)};
   if (files.map) documents.known_map = io::encode(MapUpdate{.stamp = {}, .map = *files.map});
   return documents;
 }
