@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/wheel_kinematics.h"
 #include "io/logs/run_log.h"
+#include "io/yaml/settings_yaml.h"
 
 namespace patrol::app {
 namespace {
@@ -37,15 +38,78 @@ link::VelocityLimits limits_of(const Scenario& scenario, const RobotDescription&
           .yaw_rate_radps = legs.max_yaw_rate_radps};
 }
 
-/// Sets which sensors the robot has; their error models are not documented.
-void document_sensors(const sim::SensorSuiteSettings& sensors, sim::SensorSuiteSettings& documented) {
-  Sensors::for_each([&]<typename Message>(std::type_identity<Message>) {
-    if constexpr (HasSensorSettings<Message>) {
-      auto& own = documented.*SensorTraits<Message>::kSettings;
-      if constexpr (requires { own.enabled; }) own.enabled = sim::is_enabled<Message>(sensors);
-    }
-  });
-}
+/// Section of one key.
+template <typename Value>
+struct KnownKey {
+  const char* name;
+  const Value& value;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit(self.name, self.value);
+  }
+};
+
+/// Sensors that the robot has, without their error models.
+struct KnownSensors {
+  const sim::SensorSuiteSettings& sensors;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    auto visit_enabled = [&](const char* name, const auto& settings) {
+      if constexpr (requires { settings.enabled; }) visit(name, KnownKey<bool>{"enabled", settings.enabled});
+    };
+    sim::SensorSuiteSettings::fields(self.sensors, visit_enabled);
+  }
+};
+
+/// Documents of the teleoperation, without the simulated operator.
+struct KnownTeleop {
+  const TeleopSettings& teleop;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("route", self.teleop.route);
+    visit("recorded", self.teleop.recorded);
+  }
+};
+
+/// Drive on wheels: type and rollers.
+struct KnownWheelDrive {
+  const sim::WheelDriveSettings& drive;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    visit("type", self.drive.type);
+    visit("roller_pattern", self.drive.roller_pattern);
+    visit("roller_angle_rad", self.drive.roller_angle_rad);
+  }
+};
+
+/// Keys of a scenario that a robot's software may know.
+struct KnownScenario {
+  const Scenario& scenario;
+
+  template <typename Self, typename Visitor>
+  static void fields(Self& self, Visitor& visit) {
+    const Scenario& known = self.scenario;
+    visit("version", known.version);
+    visit("world", known.world);
+    visit("robot", known.robot);
+    visit("seed", known.seed);
+    visit("mission", known.mission);
+    visit("tour", known.tour);
+    visit("map", known.map);
+    visit("goals", known.goals);
+    visit("references", known.references);
+    visit("teleop", KnownTeleop{known.teleop});
+    visit("mounts", known.mounts);
+    visit("sensors", KnownSensors{known.sensors});
+    visit("wheel_drive", KnownWheelDrive{known.wheel_drive});
+    visit("stack", known.stack);
+    visit("log", KnownKey<double>{"map_period_s", known.log.map_period_s});
+  }
+};
 
 /// Topics of the commands to instruments that the robot lacks. Every robot can have a warning light: it is not
 /// simulated.
@@ -67,28 +131,7 @@ EventSubjects subjects_of(const ScenarioFiles& files) {
 
 }  // namespace
 
-Scenario documented_scenario(const Scenario& scenario) {
-  Scenario documented;
-  documented.version = scenario.version;
-  documented.world = scenario.world;
-  documented.robot = scenario.robot;
-  documented.seed = scenario.seed;
-  documented.mission = scenario.mission;
-  documented.tour = scenario.tour;
-  documented.map = scenario.map;
-  documented.goals = scenario.goals;
-  documented.references = scenario.references;
-  documented.teleop.route = scenario.teleop.route;
-  documented.teleop.recorded = scenario.teleop.recorded;
-  documented.mounts = scenario.mounts;
-  documented.wheel_drive.type = scenario.wheel_drive.type;
-  documented.wheel_drive.roller_pattern = scenario.wheel_drive.roller_pattern;
-  documented.wheel_drive.roller_angle_rad = scenario.wheel_drive.roller_angle_rad;
-  document_sensors(scenario.sensors, documented.sensors);
-  documented.stack = scenario.stack;
-  documented.log.map_period_s = scenario.log.map_period_s;
-  return documented;
-}
+std::string known_settings(const Scenario& scenario) { return io::to_yaml(KnownScenario{scenario}); }
 
 StackDocuments stack_documents(const Scenario& scenario, const std::string& name, const ScenarioFiles& files,
                                const std::filesystem::path& data_root, Time tick) {
@@ -103,7 +146,7 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
                 .site = files.mission_text,
                 .goals = scenario.goals.empty() ? "" : text_of(world / scenario.goals),
                 .registration = files.map_registration ? text_of(registration_beside(world / scenario.map)) : "",
-                .documents = to_yaml(documented_scenario(scenario))},
+                .documents = known_settings(scenario)},
       .environment = {{"PATROL_DATA", data_root.string()}},
       .static_transforms = io::encode(io::sensor_mounts(files.robot)),
       .known_map = {},
