@@ -119,13 +119,16 @@ std::optional<std::string> unexpected_frame(const PublishedMessage& message) {
 }
 
 PublishedMessage checked_message(link::PublishedMessage message, const StampRange& stamps) {
-  const auto refuse = [name = quoted_name(message.topic)](const std::string& reason) {
-    throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", name, reason));
+  const std::string where = message.topic.empty() ? "a topic without a name" : quoted_name(message.topic);
+  const auto refuse = [&where](const std::string& reason) {
+    throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", where, reason));
   };
   if (!message.topic.starts_with('/') || message.topic.size() > kMaxNameBytes || !io::is_utf8(message.topic) ||
       io::has_control_characters(message.topic)) {
     refuse("name of a topic must begin with / and have at most 200 printable characters in UTF-8");
   }
+  if (message.topic == link::kControlTopic<link::HelloReply>)
+    refuse("only the first message of a stack answers the hello");
   if (message.topic.starts_with("/link/") || message.topic.starts_with("/recorded/") ||
       !io::is_stack_output(message.topic))
     refuse("only the simulator writes this topic");

@@ -32,7 +32,6 @@ bool is_stack_input(std::string_view topic) {
 }
 
 bool is_stack_output(std::string_view topic) {
-  if (topic == kTransforms.topic || topic == kStaticTransforms.topic) return false;
   const std::optional<TopicInfo> info = find_topic(topic);
   return !info || std::string_view(info->source) == "stack";
 }

@@ -76,11 +76,12 @@ inline constexpr std::tuple kTopicTable{
     truth_topic<AsBuiltTruth>("/ground_truth/as_built", "Calibration and manufacturing errors drawn for this robot"),
     truth_topic<Collision>("/ground_truth/collisions", "Unintended contacts of the robot")};
 
-/// Transforms between the frames of the estimates; TransformSet is written to two topics.
+/// Transforms between the frames of the estimates, which Patrol derives from the messages of the stack. TransformSet is
+/// written to two topics.
 inline constexpr TopicInfo kTransforms =
-    stack_topic<TransformSet>("/tf", "Transforms of the estimates: map, odom, base_footprint, base_link");
+    simulator_topic<TransformSet>("/tf", "Transforms of the estimates: map, odom, base_footprint, base_link");
 inline constexpr TopicInfo kStaticTransforms =
-    stack_topic<TransformSet>("/tf_static", "Transforms from the body to the sensor frames, by the robot's model");
+    simulator_topic<TransformSet>("/tf_static", "Transforms from the body to the sensor frames, by the robot's model");
 
 /// Entry of a logged message.
 template <typename Message>
@@ -116,8 +117,7 @@ std::optional<TopicInfo> find_topic(std::string_view topic);
 
 /// Returns whether the stack receives a topic: one of a sensor or of the firmware.
 bool is_stack_input(std::string_view topic);
-/// Returns whether the stack publishes a topic. One that the program does not know is a stack's; transforms are
-/// derived.
+/// Returns whether the stack publishes a topic. One that the program does not know is a stack's.
 bool is_stack_output(std::string_view topic);
 
 }  // namespace patrol::io

@@ -19,6 +19,8 @@ TEST(Topics, TheStackPublishesItsOwnTopicsAndThoseThatTheProgramDoesNotKnow) {
   for (const char* topic : {"/cmd_vel", "/pose", "/events", "/mine"}) EXPECT_TRUE(is_stack_output(topic)) << topic;
   for (const char* topic : {"/scan", "/fall", "/ground_truth/odom", "/sim/state", "/stack/turns", "/tf", "/tf_static"})
     EXPECT_FALSE(is_stack_output(topic)) << topic;
+  for (const TopicInfo& info : topic_infos())
+    EXPECT_EQ(is_stack_output(info.topic), std::string_view(info.source) == "stack") << info.topic;
 }
 
 TEST(Topics, AMessageIsDecodedIntoTheAlternativeOfItsTopic) {
