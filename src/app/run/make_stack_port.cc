@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/run/built_in_stack.h"
+#include "app/run/compute_delay.h"
 #include "app/run/external_stack.h"
 #include "app/run/stack_documents.h"
 #include "app/scenario/mounts.h"
@@ -47,6 +48,8 @@ std::unique_ptr<StackPort> make_built_in_stack(const Scenario& scenario, const S
 }  // namespace
 
 std::unique_ptr<StackPort> make_stack_port(const Scenario& scenario, const ScenarioFiles& files, StackContext context) {
+  if (const std::string warning = warning_of_unused(scenario.stack.compute); !warning.empty())
+    fmt::print(stderr, "patrol: warning: {}\n", warning);
   if (scenario.stack.command.empty()) return make_built_in_stack(scenario, files, context.has_thread);
   StackConnection connection{.command = scenario.stack.command,
                              .output = std::move(context.output),

@@ -168,6 +168,19 @@ class Env(unittest.TestCase):
         with self.assertRaisesRegex(LinkError, r"closed the connection: patrol: --set start.left_m=1000: .*no ground"):
             PatrolEnv("street/short", patrol=PATROL, settings=["start.left_m=1000"])
 
+    def test_options_that_exclude_each_other_are_refused_at_construction(self):
+        for error, text, options in ((ValueError, "turn_period=1.0: must be shorter than episode_s=1.0", {"turn_period": 1.0, "episode_s": 1.0}),
+                                     (ValueError, "turn_period=nan: must be a positive number", {"turn_period": float("nan")}),
+                                     (ValueError, "turn_period=0: must be a positive number", {"turn_period": 0}),
+                                     (ValueError, "episode_s=-1: must be a positive number", {"episode_s": -1}),
+                                     (TypeError, "must be a list of \"path=value\"", {"settings": "time_limit_s=5"}),
+                                     (ValueError, "seed=4: reset", {"settings": ["seed=4"]}),
+                                     (ValueError, "stack.command=x: the environment is the stack", {"settings": ["stack.command=x"]}),
+                                     (ValueError, "time_limit_s=5: episode_s", {"settings": ["time_limit_s=5"], "episode_s": 2})):
+            with self.subTest(options), self.assertRaises(error) as caught:
+                PatrolEnv("street/short", patrol="no-such-program", **options)
+            self.assertIn(text, str(caught.exception))
+
     def test_an_unknown_scenario_is_an_error_with_its_line(self):
         with self.assertRaisesRegex(LinkError, "no_such"):
             PatrolEnv("street/no_such", patrol=PATROL)

@@ -6,6 +6,7 @@
 """
 
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -47,14 +48,16 @@ class PatrolEnv(gymnasium.Env):
 
     The program waits for the next step for a day: a learner may pause. `stack.timeout_s` in `settings` is another limit, s.
 
-    Raises LinkError with the reason of the program if a run cannot start or ends with an error, and ValueError for an action
-    of another shape or with a number that is not finite.
+    Raises LinkError with the reason of the program if a run cannot start or ends with an error. Raises ValueError for an
+    action of another shape or with a number that is not finite, for a step that is not shorter than the episode, and for
+    settings that the environment sets: `seed`, `stack.command`, and `time_limit_s` beside `episode_s`.
     """
 
     metadata = {"render_modes": []}
 
     def __init__(self, scenario, *, patrol="patrol", turn_period=0.1, episode_s=None, settings=(), reward=None, out=None,
                  render_mode=None):
+        _check_options(turn_period, episode_s, settings)
         self.render_mode = render_mode
         self._command = [patrol, "run", str(scenario), "--set", f"stack.timeout_s={_PAUSE_S}"]
         for setting in settings:
@@ -239,6 +242,23 @@ class PatrolEnv(gymnasium.Env):
         if self._directory is not None and not is_kept:
             shutil.rmtree(self._directory, ignore_errors=True)
         self._directory = self._process = self._client = self._turn = None
+
+
+def _check_options(turn_period, episode_s, settings):
+    """Raises TypeError or ValueError if the options of an environment exclude each other or are out of range."""
+    for name, seconds in (("turn_period", turn_period), ("episode_s", episode_s)):
+        if seconds is not None and not (math.isfinite(seconds) and seconds > 0.0):
+            raise ValueError(f"{name}={seconds}: must be a positive number of seconds")
+    if episode_s is not None and turn_period >= episode_s:
+        raise ValueError(f"turn_period={turn_period}: must be shorter than episode_s={episode_s}")
+    if isinstance(settings, (str, bytes)):
+        raise TypeError(f'settings={settings!r}: must be a list of "path=value"')
+    own = {"seed": "reset(seed=...) sets it", "stack.command": "the environment is the stack"}
+    if episode_s is not None:
+        own["time_limit_s"] = "episode_s sets it"
+    for setting in settings:
+        if (path := setting.partition("=")[0]) in own:
+            raise ValueError(f"settings: {setting}: {own[path]}")
 
 
 def _new_directory(folder):
