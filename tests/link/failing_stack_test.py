@@ -179,6 +179,8 @@ class FailingStack(unittest.TestCase):
                    "turn.publish('{0}', turn.client.type_of('{0}')(x=1.0)); return")
         for action, reason in ((publish.format("/scan"), "message on /scan: only the simulator writes this topic"),
                                (publish.format("/tf_static"), "/tf_static: only the simulator writes this topic"),
+                               (publish.format("/link/hello_reply"), "hello_reply: only the first message of a stack answers"),
+                               (declare.format("", "a/msg/B"), "message on a topic without a name: name of a topic must begin with /"),
                                (declare.format("/ground_truth/odom", "a/msg/B"), "only the simulator writes this topic"),
                                (declare.format("/pose", "a/msg/B"), "/pose: type is a/msg/B: must be geometry_msgs"),
                                (declare.format("speed", "a/msg/B"), "name of a topic must begin with /"),
