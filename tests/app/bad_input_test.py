@@ -269,6 +269,13 @@ class BadInput(unittest.TestCase):
         self.refuse("report", self.folder.name, says=[self.folder.name])
         self.assertFalse((pathlib.Path(self.folder.name) / "report.html").exists())
 
+    def test_a_report_that_would_replace_a_file_of_the_run(self):
+        for name in ("log.mcap", "scenario.yaml"):
+            file = pathlib.Path(self.folder.name) / name
+            file.write_text("mine")
+            self.refuse("report", self.folder.name, "--out", file, says=[f"patrol: --out {file}: must end in .html"])
+            self.assertEqual(file.read_text(), "mine")
+
     def test_a_users_files_stay(self):
         folder = pathlib.Path(self.folder.name)
         for name in ("scans/notes.ply", "log.mcap/notes"):

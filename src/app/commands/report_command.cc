@@ -35,6 +35,7 @@ report::Page page_of(const std::filesystem::path& root, const std::filesystem::p
 
 ExitCode report_command(const ReportOptions& options) {
   const std::filesystem::path out = options.out.value_or(options.directory / "report.html");
+  if (out.extension() != ".html") throw InputError(fmt::format("--out {}: must end in .html", out.string()));
   std::string html;
   ProgressBar bar;
   bar.show("report  reading the run");
