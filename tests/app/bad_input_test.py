@@ -276,6 +276,10 @@ class BadInput(unittest.TestCase):
             self.refuse("report", self.folder.name, "--out", file, says=[f"patrol: --out {file}: must end in .html"])
             self.assertEqual(file.read_text(), "mine")
 
+    def test_a_sweep_of_an_unknown_robot(self):
+        self.refuse_variants("sweep", "--vary", "robot=quadruped,nobody", says=["robot = nobody: ", "not found (known: cart, quadruped"])
+        self.refuse_variants("sweep", "--set", "robot=nobody", says=["robot = nobody: ", "not found (known: cart, quadruped"])
+
     def test_a_users_files_stay(self):
         folder = pathlib.Path(self.folder.name)
         for name in ("scans/notes.ply", "log.mcap/notes"):

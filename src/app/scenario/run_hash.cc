@@ -54,8 +54,8 @@ const std::string& RunHasher::file_digest(const std::filesystem::path& file) {
 std::string RunHasher::hash(const Scenario& scenario) {
   constexpr std::size_t kDigits = 20;
   std::string asked = fmt::format("{}\nworld {}\nrobot {}\n", program_,
-                                  folder_digest(world_folder(scenario.world, data_root_), "scenarios"),
-                                  folder_digest(robot_file(scenario.robot, ".urdf", data_root_).parent_path(), ""));
+                                  folder_digest(find_world(scenario.world, data_root_).parent_path(), "scenarios"),
+                                  folder_digest(find_robot(scenario.robot, data_root_).parent_path(), ""));
   for (const std::filesystem::path& file : named_files(scenario, data_root_))
     asked += fmt::format("file {}\n", file_digest(file));
   for (const std::filesystem::path& file : files_of_command(scenario.stack.command))
