@@ -213,6 +213,18 @@ class Slam(unittest.TestCase):
         self.assertIn("three.g2o:5", self.patrol("solve", graph, "--out", self.folder / "absent.g2o", code=2).stderr)
         self.assertFalse((self.folder / "absent.g2o").exists())
 
+    def test_the_folder_of_a_solved_graph_is_made_and_parts_are_warned_of(self):
+        nodes = [f"VERTEX_SE2 {k} {k} 0 0" for k in range(4)]
+        edges = [f"EDGE_SE2 {a} {b} 1 0 0 1 0 0 1 0 1" for a, b in [(0, 1), (2, 3)]]
+        graph = self.folder / "parts.g2o"
+        for lines, warning in [(nodes + edges, "2 parts that no edge connects: "), (nodes, "has no edges: "), (nodes[:2] + edges[:1], "")]:
+            graph.write_text("\n".join(lines) + "\n")
+            out = self.folder / f"solved_{len(lines)}" / "solved.g2o"
+            done = self.patrol("solve", graph, "--out", out)
+            self.assertTrue(out.exists())
+            self.assertEqual(done.stderr.count("\n"), 1 if warning else 0)
+            self.assertIn(f"patrol: {graph}: {warning}" if warning else "", done.stderr)
+
     def refuse(self, text, *says, more=()):
         damaged = self.folder / "damaged.log"
         damaged.write_text(text)
