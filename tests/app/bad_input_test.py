@@ -280,6 +280,9 @@ class BadInput(unittest.TestCase):
         self.refuse_variants("sweep", "--vary", "robot=quadruped,nobody", says=["robot = nobody: ", "not found (known: cart, quadruped"])
         self.refuse_variants("sweep", "--set", "robot=nobody", says=["robot = nobody: ", "not found (known: cart, quadruped"])
 
+    def test_a_sweep_metric_of_an_unknown_station(self):
+        self.refuse_variants("sweep", "--metric", "stations.nowhere.reached", says=["--metric stations.nowhere.reached: unknown station nowhere: must be one of "])
+
     def test_a_users_files_stay(self):
         folder = pathlib.Path(self.folder.name)
         for name in ("scans/notes.ply", "log.mcap/notes"):

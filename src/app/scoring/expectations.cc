@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -10,12 +9,10 @@
 
 #include <fmt/format.h>
 
-#include "app/scenario/data_folders.h"
 #include "app/scenario/mounts.h"
 #include "app/scoring/metric_infos.h"
-#include "core/calibration/calibration_estimate.h"
+#include "app/scoring/metric_subjects.h"
 #include "core/error.h"
-#include "core/text.h"
 #include "io/logs/topics.h"
 #include "io/yaml/settings_yaml.h"
 
@@ -113,34 +110,6 @@ io::Expectations with_map_coverage(io::Expectations expectations) {
   return expectations;
 }
 
-/// Part of a metric's path that its documentation leaves open: "box" of "stations.box.reached" for
-/// "stations.*.reached".
-std::string open_part(const std::string& metric, const std::string& pattern) {
-  const std::size_t begin = pattern.find('*'), num_after = pattern.size() - begin - 1;
-  return metric.substr(begin, metric.size() - begin - num_after);
-}
-
-void check_name(const std::string& location, const char* subject, const std::string& name,
-                const std::vector<std::string>& known) {
-  if (std::ranges::find(known, name) != known.end()) return;
-  const std::string nearest = io::closest_match(name, known);
-  throw InputError(fmt::format("{}unknown {} {}{}: must be one of {}", location, subject, name,
-                               nearest.empty() ? "" : "; did you mean " + nearest + "?", join(known, ", ")));
-}
-
-std::vector<std::string> stations_of(const Route& route) {
-  std::vector<std::string> names;
-  for (const Station& station : route.stations) names.push_back(station.name);
-  return names;
-}
-
-/// Names of the calibration parameters, with those of the anchors.
-std::vector<std::string> parameters_of(const Route& route) {
-  std::vector<std::string> names = names_of(kCalibrationParameters);
-  for (const UwbAnchor& anchor : route.anchors) names.push_back(anchor_delay_name(anchor.number));
-  return names;
-}
-
 /// Metrics whose values depend on the mission or on the survey in its file.
 constexpr std::array<std::string_view, 10> kMissionMetrics = {"stations.*",
                                                               "goals.*",
@@ -163,13 +132,6 @@ bool is_set(const std::string& metric, const std::vector<std::string>& overrides
   const std::string own = "expect." + metric + "=";
   return std::ranges::any_of(
       overrides, [&](const std::string& one) { return one.starts_with(own) || one.starts_with("expect="); });
-}
-
-/// Returns whether `text` is an index into a list.
-bool is_index(const std::string& text, std::size_t size) {
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  return error == std::errc() && end == text.data() + text.size() && index < size;
 }
 
 }  // namespace
@@ -222,7 +184,7 @@ void check_expected_metrics(const Scenario& scenario, const io::SettingsSource& 
   YAML::Node document;
   if (!scenario.expect.empty() && std::filesystem::is_regular_file(source.file))
     document = io::load_document(source.file, {});
-  std::optional<Route> route;
+  MetricSubjects subjects(scenario, source.file);
   for (const auto& [metric, expectation] : scenario.expect) {
     const std::string location =
         source.location(io::line_of(find_node(document, {"expect", metric})), "expect." + metric);
@@ -231,13 +193,7 @@ void check_expected_metrics(const Scenario& scenario, const io::SettingsSource& 
     if (expectation.is_boolean && !info.is_boolean())
       throw InputError(fmt::format("{}must be a number or an interval {{min:, max:}}, not {}", location,
                                    expectation.min > 0.5 ? "true" : "false"));
-    const bool is_of_station = info.path.starts_with("stations.*"),
-               is_of_parameter = info.path.starts_with("calibration.*");
-    if (info.path.find('*') == std::string::npos || !(is_of_station || is_of_parameter)) continue;
-    if (!route) route = load_route(scenario, find_data_root(source.file));
-    const std::string name = open_part(metric, info.path);
-    if (is_of_parameter) check_name(location, "parameter", name, parameters_of(*route));
-    else if (!is_index(name, route->stations.size())) check_name(location, "station", name, stations_of(*route));
+    subjects.check(location, metric);
   }
 }
 

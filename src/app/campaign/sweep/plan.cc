@@ -1,6 +1,7 @@
 #include "app/campaign/sweep/plan.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "app/scenario/run_hash.h"
 #include "app/scoring/expectations.h"
 #include "app/scoring/metric_infos.h"
+#include "app/scoring/metric_subjects.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "io/yaml/settings_yaml.h"
@@ -53,18 +55,40 @@ Scenario load_variant(const std::filesystem::path& scenario, const SweepManifest
   }
 }
 
+/// Throws InputError for a metric of a station or a parameter that no variant has. `variants`: their scenarios.
+void check_subjects(const std::filesystem::path& scenario, const std::vector<std::string>& metrics,
+                    const std::vector<Scenario>& variants) {
+  for (const std::string& metric : metrics) {
+    std::optional<InputError> refusal;
+    for (const Scenario& variant : variants) {
+      try {
+        MetricSubjects(variant, scenario).check(fmt::format("--metric {}: ", metric), metric);
+        refusal.reset();
+        break;
+      } catch (const InputError& error) {
+        if (!refusal) refusal = error;
+      }
+    }
+    if (refusal) throw InputError(*refusal);
+  }
+}
+
 /// Adds the runs, ordered by seed, then by variant.
 void plan_runs(const std::filesystem::path& scenario, const std::vector<Axis>& axes, SweepManifest& manifest) {
   RunHasher hasher(find_data_root(scenario));
+  std::vector<Scenario> variants;  // of the first seed
   for (const std::uint64_t seed : manifest.seeds) {
     for (std::size_t variant = 0; variant < manifest.variants.size(); ++variant) {
       PlannedRun run{.variant = variant, .seed = seed, .overrides = manifest.variants[variant].overrides, .hash = ""};
       for (const Axis& axis : axes) {
         if (axis.is_random()) run.overrides.push_back(axis.sample(seed));
       }
-      run.hash = hasher.hash(load_variant(scenario, manifest, run));
+      Scenario loaded = load_variant(scenario, manifest, run);
+      run.hash = hasher.hash(loaded);
       manifest.runs.push_back(run);
+      if (seed == manifest.seeds.front()) variants.push_back(std::move(loaded));
     }
+    if (seed == manifest.seeds.front()) check_subjects(scenario, manifest.metrics, variants);
   }
 }
 

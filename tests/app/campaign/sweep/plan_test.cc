@@ -77,6 +77,21 @@ TEST(PlanSweep, AMissionFromElsewhereIsKnownByWhatStandsInIt) {
   EXPECT_NE(plan_sweep(elsewhere).runs[0].hash, hash);
 }
 
+TEST(PlanSweep, AnUnknownRobotIsRefusedWithTheKnownOnes) {
+  EXPECT_THAT(
+      [] { plan_sweep(street({"robot=quadruped,nobody"})); },
+      ::testing::ThrowsMessage<InputError>(::testing::AllOf(HasSubstr("robot = nobody"), HasSubstr("known: "))));
+}
+
+TEST(PlanSweep, AMetricOfAStationThatNoVariantHasIsRefused) {
+  SweepOptions options = street({});
+  options.metrics = {"stations.nowhere.reached"};
+  EXPECT_THAT([&] { plan_sweep(options); }, ::testing::ThrowsMessage<InputError>(HasSubstr(
+                                                "--metric stations.nowhere.reached: unknown station nowhere")));
+  options.metrics = {"stations.0.reached"};
+  EXPECT_EQ(plan_sweep(options).metrics, options.metrics);
+}
+
 TEST(PlanSweep, AMissionThatIsMissingIsRefusedBeforeAnythingRuns) {
   EXPECT_THROW(plan_sweep(street({"mission=routes/short.json,routes/nowhere.json"})), InputError);
 }
