@@ -283,6 +283,14 @@ class BadInput(unittest.TestCase):
     def test_a_sweep_metric_of_an_unknown_station(self):
         self.refuse_variants("sweep", "--metric", "stations.nowhere.reached", says=["--metric stations.nowhere.reached: unknown station nowhere: must be one of "])
 
+    def test_empty_keys_of_overrides(self):
+        for path in ("sensors..lidar", ".seed", "seed."):
+            self.refuse_run(SHORT, "--set", f"{path}=3", says=[f"patrol: --set {path}=3: {path} has an empty key"])
+
+    def test_numbers_of_an_association(self):
+        for option in ("--max-dt-s", "--reference-x-m"):
+            self.refuse("score", "--estimate", "a", "--relations", "b", option, "-11", says=[f"patrol: {option}: ", "-11 not in range"])
+
     def test_a_users_files_stay(self):
         folder = pathlib.Path(self.folder.name)
         for name in ("scans/notes.ply", "log.mcap/notes"):

@@ -60,12 +60,15 @@ constexpr const char* kReferenceHelp = "Reference trajectory (TUM)";
 constexpr const char* kRelationsHelp = "Reference relations (Freiburg: t1 t2 x y z roll pitch yaw)";
 
 void add_association(CLI::App& command, AssociationOptions& association) {
-  command.add_option("--max-dt-s", association.max_dt_s,
-                     "Maximum time difference for nearest-pose association, s (default: 0.02 for relations, 0.01 for "
-                     "the alignment to a reference)");
+  command
+      .add_option("--max-dt-s", association.max_dt_s,
+                  "Maximum time difference for nearest-pose association, s (default: 0.02 for relations, 0.01 for "
+                  "the alignment to a reference)")
+      ->check(CLI::Range(0.0, 10.0));  // limits of score::RelationSettings
   command
       .add_option("--reference-x-m", association.reference_x_m,
                   "Offset of the relations' reference point along body x, m")
+      ->check(CLI::Range(-10.0, 10.0))
       ->capture_default_str();
 }
 

@@ -58,6 +58,8 @@ void apply_override(const YAML::Node& root, const std::string& override) {
   const YAML::Node value = parse_yaml("--set " + override, override.substr(equals + 1), false);
   const std::string text = override.substr(0, equals);
   const std::vector<std::string> path = override_path(text);
+  if (std::ranges::find(path, "") != path.end())
+    throw InputError("--set " + override + ": " + text + " has an empty key: must be keys separated by one point each");
   if (const std::size_t bracket = text.find('['); path.front() != "expect" && bracket != std::string::npos) {
     throw InputError(
         fmt::format("--set {}: {}: must name entries of a list as in {}.0", override, text, text.substr(0, bracket)));

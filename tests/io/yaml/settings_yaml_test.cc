@@ -115,6 +115,12 @@ TEST(LoadSettings, AnEmptyMapIsAllDefaultsAndAnEmptyFileIsRefused) {
     EXPECT_THAT(complaint_about(empty), StartsWith("a.yaml: is empty")) << empty;
 }
 
+TEST(LoadSettings, EmptyKeysOfOverridesAreRefused) {
+  for (const char* path : {"sensors..lidar", ".seed", "seed."})
+    EXPECT_THAT(complaint_about("{}\n", {fmt::format("{}=3", path)}),
+                StartsWith(fmt::format("--set {0}=3: {0} has an empty key", path)));
+}
+
 TEST(LoadSettings, ASecondDocumentIsRefused) {
   EXPECT_THAT(complaint_about("seed: 2\n---\nseed: 3\n"), StartsWith("a.yaml:2: more than one YAML document"));
   EXPECT_THAT(complaint_about("{seed: 2}\nseed: 3\n"), StartsWith("a.yaml:2: "));
