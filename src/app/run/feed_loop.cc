@@ -49,6 +49,8 @@ class FeedLoop {
       else take_recorded_turns();
     } catch (const link::LinkError& error) {
       set_failure(outcome_, error);
+      has_failed_ = true;
+      deliver_until(outcome_.duration, true);  // the ground truth until then, by which the run is scored
     }
     log_.close();
     outcome_.wall_s = wall_seconds() - wall_start_s_;
@@ -130,7 +132,7 @@ class FeedLoop {
       if (message.log_time > now || (!is_before_turn && !is_end && message.log_time == now)) return;
       log_.write_foreign(message.log_time, message.topic, next_input_->type, next_input_->definition, message.cdr);
       if (message.topic == io::kTopic<FallReport>) fall_time_ = message.log_time;
-      if (is_for_stack) stack_.deliver(std::move(message));
+      if (is_for_stack && !has_failed_) stack_.deliver(std::move(message));
       next_input_.reset();
     }
   }
@@ -170,6 +172,7 @@ class FeedLoop {
   Time next_progress_{};
   std::optional<Input> next_input_;
   std::optional<Time> fall_time_;
+  bool has_failed_ = false;  ///< whether the stack has failed
   RunOutcome outcome_;
 };
 

@@ -161,6 +161,12 @@ class Branch(unittest.TestCase):
                 self.assertIn(f"patrol: {option} {program}: ", done.stderr)
                 self.assertIn(reason, done.stderr)
 
+    def test_a_stack_that_fails_at_once_while_it_is_fed_is_3_with_its_message(self):
+        done = run_patrol("feed", self.parent, "--stack", "false", "--out", self.path / "fed_false")
+        self.assertEqual(done.returncode, 3, done.stdout + done.stderr)
+        self.assertIn("stack", done.stdout + done.stderr)
+        self.assertNotIn("ground truth", done.stderr)
+
     def test_a_trace_outside_of_the_run_is_refused(self):
         for span, says in ((("--from-s", 50, "--to-s", 60), "--from-s 50: must be in [0, 6.000], the duration of the run"),
                            (("--from-s", 3, "--to-s", 2), "--to-s 2: must be at least --from-s, 3")):
