@@ -210,14 +210,14 @@ EdgeSample edge_sample(const Site& site, const PosedScan& posed, const Beam& bea
   for (int k = -kHalf; k <= kHalf; ++k) {
     const double azimuth_rad = posed.azimuth_rad(beam.index) + sign * k * kStep_deg * kDegree;
     const Ray ray =
-        trace(site, pose.position, pose.rotation * direction_of(azimuth_rad), device, posed.scan.range_max_m);
+        trace(site, pose.position, pose.rotation * posed.direction_at(azimuth_rad), device, posed.scan.range_max_m);
     sample.range_m.push_back(static_cast<float>(ray.range_m));
     sample.light.push_back(static_cast<float>(ray.light));
   }
   for (int k = -kPreviousHalf; k <= kPreviousHalf; ++k) {
     const double azimuth_rad = posed.azimuth_rad(beam.index - 1) + sign * k * kStep_deg * kDegree;
-    const Ray ray =
-        trace(site, previous.position, previous.rotation * direction_of(azimuth_rad), device, posed.scan.range_max_m);
+    const Ray ray = trace(site, previous.position, previous.rotation * posed.direction_at(azimuth_rad), device,
+                          posed.scan.range_max_m);
     sample.previous_m.push_back(static_cast<float>(ray.range_m));
   }
   return sample;

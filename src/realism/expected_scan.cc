@@ -18,6 +18,7 @@ class BeamFan {
  public:
   BeamFan(const Site& site, const PosedScan& posed, std::size_t beam)
       : site_(site),
+        posed_(posed),
         T_site_lidar_(posed.pose_of(beam)),
         azimuth_rad_(posed.azimuth_rad(beam)),
         max_range_m_(posed.scan.range_max_m) {}
@@ -26,11 +27,12 @@ class BeamFan {
     return site_.cast(T_site_lidar_.position, direction(offset_rad), max_range_m_);
   }
   Eigen::Vector3d direction(double offset_rad) const {
-    return T_site_lidar_.rotation * direction_of(azimuth_rad_ + offset_rad);
+    return T_site_lidar_.rotation * posed_.direction_at(azimuth_rad_ + offset_rad);
   }
 
  private:
   const Site& site_;
+  const PosedScan& posed_;
   Pose3 T_site_lidar_;
   double azimuth_rad_, max_range_m_;
 };
@@ -121,7 +123,7 @@ std::vector<Beam> beams_of(const PosedScan& posed, const std::vector<ExpectedBea
     if (expected[i].has_surface()) {
       const Pose3 T_site_lidar = posed.pose_of(i);
       const Eigen::Vector3d point =
-          T_site_lidar * Eigen::Vector3d(expected[i].range_m * direction_of(posed.azimuth_rad(i)));
+          T_site_lidar * Eigen::Vector3d(expected[i].range_m * posed.direction_at(posed.azimuth_rad(i)));
       beam.x_m = static_cast<float>(point.x()), beam.y_m = static_cast<float>(point.y());
     }
     beams.push_back(beam);

@@ -55,7 +55,7 @@ AlignmentSums sums_of(const Site& site, const PosedScan& posed, const BeamRules&
     const double range_m = corrected_range_m(posed.scan.ranges_m[i], expected[i], errors);
     if (!expected[i].is_smooth || expected[i].is_glass || !std::isfinite(range_m) || range_m <= 0.0) continue;
     const Pose3 T_site_lidar = posed.pose_of(i);
-    const Eigen::Vector3d along = T_site_lidar.rotation * direction_of(posed.azimuth_rad(i));
+    const Eigen::Vector3d along = T_site_lidar.rotation * posed.direction_at(posed.azimuth_rad(i));
     const Eigen::Vector3d& normal = expected[i].normal;
     const double distance_m = (range_m - expected[i].range_m) * normal.dot(along);
     const double weight = weight_of(distance_m, settings.max_distance_m);
@@ -114,7 +114,7 @@ void SystematicErrorFit::add(const ScanAlignment& aligned, const std::vector<Exp
     const double range_m = corrected_range_m(posed.scan.ranges_m[i], beam, errors);
     if (!beam.is_smooth || beam.is_glass || !std::isfinite(range_m) || range_m <= 0.0) continue;
     const Pose3 T_site_lidar = posed.pose_of(i);
-    const Eigen::Vector3d along = T_site_lidar.rotation * direction_of(posed.azimuth_rad(i));
+    const Eigen::Vector3d along = T_site_lidar.rotation * posed.direction_at(posed.azimuth_rad(i));
     const double effect = beam.normal.dot(along), distance_m = (range_m - beam.range_m) * effect;
     const double weight = weight_of(distance_m, settings_.max_distance_m);
     const Eigen::Vector3d pose = jacobian_of(beam.normal, T_site_lidar.position + range_m * along - center);

@@ -38,6 +38,17 @@ TEST(ExpectedBeams, InARoomAreItsRangeIncidenceAndSlopeInClosedForm) {
   EXPECT_LE(num_smooth, 356u);
 }
 
+TEST(ExpectedBeams, OfAConeMeetTheWallsFartherByItsCosine) {
+  constexpr double kCone_rad = 0.05;
+  const Site site = test::site_of(test::room());
+  PosedScan posed = test::posed_scan(360);
+  const std::vector<ExpectedBeam> level = expected_beams(site, posed, {});
+  posed.aim = sim::LidarAim({.cone_rad = kCone_rad});
+  const std::vector<ExpectedBeam> raised = expected_beams(site, posed, {});
+  for (std::size_t i = 0; i < level.size(); ++i)
+    EXPECT_NEAR(raised[i].range_m, level[i].range_m / std::cos(kCone_rad), 1e-6) << i;
+}
+
 TEST(ExpectedBeams, ResidualsAreThePlantedBiasAndEachClassHasItsBeam) {
   // A wall at x = 4 m with glass in the middle of the upper half, and a post of 0.2 m before it: a jump of 0.5 m.
   const Site site =

@@ -1,5 +1,7 @@
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -49,10 +51,13 @@ ExitCode calibrate_lidar_command(const CalibrateOptions& options) {
   const std::string source =
       fmt::format("from {} in {}", options.log.filename().string(), input->source.world_xml.filename().string());
   const io::Metrics metrics = metrics_of(*calibration);
+  const std::string warning = misfit_warning(calibration->by_preset.ks(), calibration->by_fit.ks());
+  std::vector<std::string> notes = notes_of(*input, settings.realism, calibration->by_fit);
+  if (!warning.empty()) notes.insert(notes.begin(), "Warning: " + warning + ".");
   const RealismContents contents{.kind = "lidar calibration",
                                  .title = fmt::format("Lidar of {}", options.log.filename().string()),
                                  .facts = facts_of(*input, settings.realism),
-                                 .notes = notes_of(*input, settings.realism, calibration->by_fit),
+                                 .notes = std::move(notes),
                                  .first = {parameter_section(*calibration)}};
   io::save_text(options.out / "calibration.yaml", calibration_yaml(*calibration, source));
   io::save_settings(options.out / "lidar.yaml", preset_of(*calibration, *input),
@@ -66,6 +71,7 @@ ExitCode calibrate_lidar_command(const CalibrateOptions& options) {
                fmt::format("{}{}{}\n", io::to_text(input->scans.summary), table_text(*calibration),
                            (options.out / "lidar.yaml").string()),
                metrics);
+  if (!warning.empty()) fmt::print(stderr, "patrol: {}: {}\n", options.log.string(), warning);
   return ExitCode::kDone;
 }
 

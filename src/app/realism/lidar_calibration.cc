@@ -123,6 +123,15 @@ LidarPreset preset_of(const LidarCalibration& calibration, const RealismInput& i
   return preset;
 }
 
+std::string misfit_warning(double ks_preset, double ks_fit) {
+  constexpr double kMaxRatio = 0.5, kSmallDistance = 0.03;
+  if (ks_fit <= kSmallDistance || ks_fit <= kMaxRatio * ks_preset) return "";
+  return fmt::format(
+      "the fitted settings do not explain the log: on the held-out half, their distance is {:.3f}, that of the preset "
+      "{:.3f}; the intervals do not hold",
+      ks_fit, ks_preset);
+}
+
 std::string calibration_yaml(const LidarCalibration& calibration, const std::string& comment) {
   std::string text = "# " + comment + "\n";
   for (const realism::FittedParameter& p : calibration.fit.parameters) {
@@ -148,6 +157,8 @@ io::Metrics metrics_of(const LidarCalibration& calibration) {
                          {"ks_ratio", calibration.ks_ratio()},
                          {"preset", metrics_of(calibration.by_preset)},
                          {"fit", metrics_of(calibration.by_fit)}};
+  const std::string warning = misfit_warning(calibration.by_preset.ks(), calibration.by_fit.ks());
+  metrics["warning"] = warning.empty() ? io::Metrics() : io::Metrics(warning);
   return metrics;
 }
 

@@ -36,6 +36,10 @@ std::optional<LidarCalibration> calibrate_lidar(const RealismInput& input, const
 /// Preset of the fitted device for scenarios, with field of view, beams and range limits of the log.
 LidarPreset preset_of(const LidarCalibration& calibration, const RealismInput& input);
 
+/// Sentence for a fit that does not explain the log: its Kolmogorov-Smirnov distance on the held-out half is above 0.03
+/// and above half of the preset's. Empty for other fits.
+std::string misfit_warning(double ks_preset, double ks_fit);
+
 /// Parameters with intervals, in YAML.
 std::string calibration_yaml(const LidarCalibration& calibration, const std::string& comment);
 io::Metrics metrics_of(const LidarCalibration& calibration);

@@ -49,6 +49,13 @@ bool is_planar(const Trajectory& path) {
   return std::ranges::all_of(path, [](const StampedPose& entry) { return entry.pose.position.z() == 0.0; });
 }
 
+/// Gives a device the tilt of the axis and the cone of the beams of the lidar as built.
+void take_beam_errors(const sim::LidarErrors& drawn, sim::LidarErrors& errors) {
+  errors.axis_tilt_x_rad = drawn.axis_tilt_x_rad;
+  errors.axis_tilt_y_rad = drawn.axis_tilt_y_rad;
+  errors.cone_rad = drawn.cone_rad;
+}
+
 /// Lifts a planar path to the mean height of another one.
 Trajectory lifted(const Trajectory& path, const Pose2& T_site_path, const Trajectory& heights) {
   double z_m = 0.0;
@@ -84,14 +91,17 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
   source.is_run = scenario_file.has_value();
   std::string site = options.site, lidar = options.lidar;
   source.path_name = options.trajectory;
+  sim::LidarErrors drawn;             // of the lidar of the run
   std::optional<LidarPreset> of_run;  // lidar of the run, unless an option names another
   if (scenario_file) {
     const Scenario scenario = load_scenario(*scenario_file);
     if (site.empty()) site = scenario.world;
     if (lidar.empty()) of_run = LidarPreset{.lidar = scenario.sensors.lidar, .as_built = scenario.as_built.lidar};
     if (source.path_name.empty()) source.path_name = "truth";
-    source.T_body_lidar =
-        load_robot(scenario.robot, find_data_root(*scenario_file), scenario.mounts).description.T_body("lidar");
+    const RobotDescription robot =
+        load_robot(scenario.robot, find_data_root(*scenario_file), scenario.mounts).description;
+    source.T_body_lidar = robot.T_body("lidar");
+    drawn = sim::AsBuiltRobot(scenario.as_built, robot, scenario.seed).lidar("lidar");
   }
   if (site.empty()) throw InputError("--site: required for a log that is not of patrol run");
   if (source.path_name.empty()) throw InputError("--trajectory: required for a log that is not of patrol run");
@@ -104,9 +114,11 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
   if (is_of_run) {
     const RunRecord record = read_run_record(source.log);
     source.T_site_body = path_of_run(source.log, record, source.path_name);
-    // True poses of the body give those of the beams with the mount as built only.
-    if (source.path_name == "truth")
+    // True poses of the body give those of the beams with the mount and the beams as built only.
+    if (source.path_name == "truth") {
       source.T_body_lidar = *source.T_body_lidar * sim::mount_error(record.as_built, "lidar");
+      take_beam_errors(drawn, source.device.errors);
+    }
   } else {
     source.T_site_body = io::load_tum(source.path_name, io::SameStamps::kKeepFirst);
     if (source.is_run && is_planar(source.T_site_body))
@@ -148,6 +160,7 @@ std::optional<ScansOnPath> read_scans_on_path(const LogOnSite& source, const Log
       ++result.num_outside;
       continue;
     }
+    posed.aim = sim::LidarAim(source.device.errors);
     double lift_m = 0.0;
     if (settings.lidar_height_m > 0.0) lift_m = settings.lidar_height_m - posed.T_site_lidar.front().position.z();
     else if (!source.is_run) lift_m = kAssumedHeight_m, result.is_height_assumed = true;

@@ -62,7 +62,8 @@ struct LogOnSite {
   Trajectory T_site_body;
   std::optional<Pose3> T_body_lidar;  ///< of a run: by the robot's description, and with its true path as built;
                                       ///< none: planar, by the log
-  realism::LidarDevice device;        ///< of the preset
+  /// Of the preset; of a run with its true path, with the tilt and the cone of the beams as built.
+  realism::LidarDevice device;
 };
 
 /// Returns whether the options name the ground truth of a run as the path.

@@ -21,7 +21,7 @@ report::MapPath points_of(const realism::PosedScan& posed, const std::string& na
     const double range_m = static_cast<double>(posed.scan.ranges_m[i]);
     if (!std::isfinite(range_m) || range_m <= 0.0 || range_m >= posed.scan.range_max_m) continue;
     const Eigen::Vector3d point =
-        posed.pose_of(i) * Eigen::Vector3d(range_m * realism::direction_of(posed.azimuth_rad(i)));
+        posed.pose_of(i) * Eigen::Vector3d(range_m * posed.direction_at(posed.azimuth_rad(i)));
     const Eigen::Vector2d p_m = point.head<2>();
     path.pieces_m.push_back({p_m - Eigen::Vector2d(half_m, 0.0), p_m + Eigen::Vector2d(half_m, 0.0)});
     box.extend(p_m);
