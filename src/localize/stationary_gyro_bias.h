@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "core/geometry/zeros.h"
 #include "core/time.h"
 #include "localize/leg_odometry.h"
 
@@ -44,7 +45,7 @@ class StationaryGyroBiasEstimator {
   using FootPositions = std::array<Eigen::Vector3d, kNumLegs>;
   /// Mean over the samples at one end of the window.
   struct End {
-    FootPositions foot_m{};
+    FootPositions foot_m = zeros<FootPositions>();
     Eigen::Vector3d gyro_angle_rad = Eigen::Vector3d::Zero();
     double time_s = 0.0;
     int count = 0;

@@ -8,8 +8,9 @@
 
 namespace patrol::sim {
 
-using FootVectors = std::array<Eigen::Vector3d, kNumLegs>;  ///< vectors, [leg]
-using FootFlags = std::array<bool, kNumLegs>;               ///< flags, [leg]
+using FootVectors = std::array<Eigen::Vector3d, kNumLegs>;   ///< vectors, [leg]
+using FootMatrices = std::array<Eigen::Matrix3d, kNumLegs>;  ///< matrices, [leg]
+using FootFlags = std::array<bool, kNumLegs>;                ///< flags, [leg]
 
 struct FrictionLimits {
   double coefficient = 0.6;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "core/geometry/zeros.h"
 #include "core/robot_description.h"
 #include "core/sensors/registry.h"
 #include "sim/locomotion/force_distribution.h"
@@ -16,11 +17,9 @@ struct TrunkState {
   double yaw_rad = 0.0;                                    ///< yaw since switch-on, drifting with the gyro
   Eigen::Vector3d rate_radps = Eigen::Vector3d::Zero();    ///< angular rate, in level
   Eigen::Vector3d velocity_mps = Eigen::Vector3d::Zero();  ///< velocity, in level
-  FootVectors foot_m;                                      ///< center of each foot relative to the trunk's origin,
-                                                           ///< in level
-  FootVectors foot_velocity_mps;                           ///< velocity relative to the trunk, in level
-  std::array<Eigen::Matrix3d, kNumLegs> jacobian;          ///< derivative of foot_m with respect to the joints, in
-                                                           ///< level
+  /// Center of each foot relative to the trunk's origin, and its velocity relative to the trunk, in level.
+  FootVectors foot_m = zeros<FootVectors>(), foot_velocity_mps = zeros<FootVectors>();
+  FootMatrices jacobian = zeros<FootMatrices>();  ///< derivative of foot_m with respect to the joints, in level
   FootFlags is_touching{};
 };
 
@@ -53,7 +52,8 @@ class TrunkEstimator {
   double tick_s_;
   double age_s_ = 0.0;  ///< time since switch-on
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();
-  FootVectors foot_roll_mps_;  ///< velocity of a foot's center as it rolls over its contact, in level
+  FootVectors foot_roll_mps_ =
+      zeros<FootVectors>();  ///< velocity of a foot's center as it rolls over its contact, in level
   TrunkState state_;
 };
 

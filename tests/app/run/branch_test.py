@@ -5,6 +5,7 @@
 usage: branch_test.py PATROL SOURCE_DIR
 """
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -160,6 +161,20 @@ class Branch(unittest.TestCase):
                 self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
                 self.assertIn(f"patrol: {option} {program}: ", done.stderr)
                 self.assertIn(reason, done.stderr)
+
+    def test_traces_are_the_same_whatever_the_memory_held_before(self):
+        """glibc fills memory that the program allocates with the byte."""
+        def trace(run, byte):
+            done = subprocess.run([PATROL, "trace", run, "--to-s", "0.02"], capture_output=True, text=True, timeout=300, cwd=SOURCE,
+                                  env={**os.environ, "MALLOC_PERTURB_": str(byte)})
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            return done.stdout
+
+        for robot in ("quadruped", "wheeled", "cart"):
+            run = self.path / robot
+            done = run_patrol("run", self.scenario, "--robot", robot, "--set", "time_limit_s=0.1", "--out", run)
+            self.assertEqual(done.returncode, 4, done.stderr)
+            self.assertEqual(trace(run, 85), trace(run, 170), robot)
 
     def test_a_stack_that_fails_at_once_while_it_is_fed_is_3_with_its_message(self):
         done = run_patrol("feed", self.parent, "--stack", "false", "--out", self.path / "fed_false")
