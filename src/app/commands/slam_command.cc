@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -29,6 +30,7 @@
 #include "io/yaml/settings_yaml.h"
 #include "report/page.h"
 #include "slam/calibration/calibration.h"
+#include "slam/consistency/frozen_scans.h"
 #include "slam/consistency/map_consistency.h"
 #include "slam/consistency/odometry_check.h"
 #include "slam/consistency/unsupported_path.h"
@@ -69,6 +71,7 @@ struct MappedLog {
   std::vector<Pose2> T_odom_body;  ///< [scan], relative to the first
   double way_m = 0.0;              ///< distance traveled, by odometry
   slam::ConsistencyCheck consistency;
+  slam::FrozenScans frozen;
   CostTable cost;
 
   double duration_s() const { return stamps.empty() ? 0.0 : to_seconds(stamps.back() - stamps.front()); }
@@ -82,6 +85,7 @@ bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::st
   slam::CalibratedScans calibrated(settings.calibration);
   std::optional<Pose2> T_first_odom, T_odom_last;
   const bool is_whole = read_scans(log, name, guard, bar, [&](RecordedScan& recorded) {
+    mapped.frozen.add(recorded);
     calibrated.correct(recorded);
     const LevelScan scan = slam::planar_scan(recorded, settings.scan);
     mapped.consistency.add(scan, mapper.update(scan, recorded.T_odom_body));
@@ -186,13 +190,16 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
   metrics["log"]["range_std_m"] = settings.range_std_m;
+  std::vector<slam::UnmatchedSegment> frozen = mapped.frozen.find(path);
   const OdometryReport odometry{.health = slam::check_odometry(mapped.T_odom_body, path, mapped.stamps),
-                                .stamps = mapped.stamps};
+                                .stamps = mapped.stamps,
+                                .num_frozen_scans = slam::num_scans_of(frozen)};
   std::vector<slam::Keyframe> earlier;
   if (submaps)
     earlier.assign(submaps->keyframes.begin(),
                    submaps->keyframes.begin() + static_cast<std::ptrdiff_t>(num_earlier_nodes));
   ConsistencyReport consistency{.consistency = mapped.consistency.check(path, earlier), .stamps = mapped.stamps};
+  consistency.consistency.frozen = std::move(frozen);
   std::vector<slam::UnsupportedPath>& unsupported = consistency.consistency.unsupported;
   unsupported =
       slam::find_unsupported_path(consistency.consistency.unmatched_segments, odometry.health.faulty, mapped.stamps);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
+#include "slam/consistency/frozen_scans.h"
 
 namespace patrol::app {
 namespace {
@@ -29,8 +30,20 @@ MappingVerdict ConsistencyReport::verdict() const {
   if (consistency.is_consistent()) {
     return {.word = "consistent",
             .tone = report::Tone::kGood,
-            .reason = fmt::format("{} pairs of segments agree, {:.1f} % of the scans matched no surfaces",
-                                  consistency.num_compared, 100.0 * consistency.unmatched_ratio())};
+            .reason = fmt::format(
+                "{} pairs of segments agree, {:.1f} % of the scans matched no surfaces{}", consistency.num_compared,
+                100.0 * consistency.unmatched_ratio(),
+                consistency.num_without_returns == 0
+                    ? ""
+                    : fmt::format(", {:.1f} % have no returns", 100.0 * consistency.without_returns_ratio()))};
+  }
+  if (!consistency.frozen.empty()) {
+    const slam::UnmatchedSegment& segment = consistency.frozen.front();
+    return {.word = "look at " + place(segment.p_map),
+            .tone = report::Tone::kBad,
+            .reason = fmt::format("the lidar is frozen: {} scans repeat the one before while odometry moves, from "
+                                  "{:.0f} s",
+                                  slam::num_scans_of(consistency.frozen), seconds(segment.first_scan))};
   }
   if (!consistency.disagreements.empty()) {
     const slam::Disagreement& worst = consistency.disagreements.front();
@@ -42,6 +55,14 @@ MappingVerdict ConsistencyReport::verdict() const {
                 worst.first_scan ? fmt::format("at {:.0f} s", seconds(*worst.first_scan)) : "in earlier sessions",
                 seconds(worst.second_scan), worst.offset_m, std::abs(kDegPerRad * worst.offset_rad),
                 consistency.disagreements.size(), consistency.num_compared)};
+  }
+  if (consistency.has_too_many_without_returns()) {
+    const slam::UnmatchedSegment& segment = consistency.max_without_returns;
+    return {.word = "look at " + place(segment.p_map),
+            .tone = report::Tone::kBad,
+            .reason = fmt::format("{:.0f} % of the scans have no returns, at most {} in a row, from {:.0f} s",
+                                  100.0 * consistency.without_returns_ratio(), segment.num_scans,
+                                  seconds(segment.first_scan))};
   }
   if (consistency.has_too_many_unmatched()) {
     const slam::UnmatchedSegment& segment = consistency.unmatched_segments.front();
@@ -98,7 +119,9 @@ io::Metrics ConsistencyReport::metrics() const {
                        {"from_s", seconds(segment.first_scan)},
                        {"scans", segment.num_scans}};
   };
-  io::Metrics unmatched = io::Metrics::array(), unsupported = io::Metrics::array();
+  io::Metrics unmatched = io::Metrics::array(), unsupported = io::Metrics::array(), frozen = io::Metrics::array();
+  for (std::size_t i = 0; i < std::min(kListed, consistency.frozen.size()); ++i)
+    frozen.push_back(to_metrics(consistency.frozen[i]));
   for (std::size_t i = 0; i < std::min(kListed, consistency.unmatched_segments.size()); ++i)
     unmatched.push_back(to_metrics(consistency.unmatched_segments[i]));
   for (std::size_t i = 0; i < std::min(kListed, consistency.unsupported.size()); ++i) {
@@ -116,7 +139,8 @@ io::Metrics ConsistencyReport::metrics() const {
   }
   const bool is_checked = consistency.num_compared > 0 || !consistency.disagreements.empty() ||
                           !consistency.unsupported.empty() || !consistency.unconnected.empty() ||
-                          consistency.has_too_many_unmatched();
+                          !consistency.frozen.empty() || consistency.has_too_many_unmatched() ||
+                          consistency.has_too_many_without_returns();
   return {{"consistent", is_checked ? io::Metrics(consistency.is_consistent()) : io::Metrics()},
           {"segments", consistency.num_segments},
           {"compared_pairs", consistency.num_compared},
@@ -126,7 +150,9 @@ io::Metrics ConsistencyReport::metrics() const {
           {"unmatched_ratio", consistency.unmatched_ratio()},
           {"unmatched_segments", unmatched},
           {"unconnected", unconnected},
-          {"unsupported", unsupported}};
+          {"unsupported", unsupported},
+          {"scans_without_returns", consistency.num_without_returns},
+          {"frozen_segments", frozen}};
 }
 
 report::VerdictBlock ConsistencyReport::block() const {
@@ -159,6 +185,12 @@ std::vector<report::MapMark> ConsistencyReport::marks() const {
     const slam::UnmatchedSegment& segment = consistency.unmatched_segments.front();
     marks.push_back({.label = fmt::format("{} scans unmatched", segment.num_scans), .p_m = segment.p_map});
   }
+  if (consistency.has_too_many_without_returns()) {
+    const slam::UnmatchedSegment& segment = consistency.max_without_returns;
+    marks.push_back({.label = fmt::format("{} scans without returns", segment.num_scans), .p_m = segment.p_map});
+  }
+  for (std::size_t i = 0; i < std::min(kMarked, consistency.frozen.size()); ++i)
+    marks.push_back({.label = "frozen lidar", .p_m = consistency.frozen[i].p_map});
   for (std::size_t i = 0; i < std::min(kMarked, consistency.unconnected.size()); ++i)
     marks.push_back({.label = "not connected", .p_m = consistency.unconnected[i].p_map});
   for (std::size_t i = 0; i < std::min(kMarked, consistency.unsupported.size()); ++i)

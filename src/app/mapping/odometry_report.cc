@@ -66,6 +66,12 @@ MappingVerdict OdometryReport::verdict() const {
             .tone = report::Tone::kWarning,
             .reason = "it hardly moves, and neither does the robot in the map"};
   }
+  if (static_cast<double>(num_frozen_scans) > kMaxFaulty * static_cast<double>(stamps.size())) {
+    return {.word = "odometry not checked",
+            .tone = report::Tone::kWarning,
+            .reason = fmt::format("the lidar is frozen: {} of {} scans repeat the one before", num_frozen_scans,
+                                  stamps.size())};
+  }
   if (is_path_of_odometry(health)) {
     return {.word = "odometry not checked",
             .tone = report::Tone::kWarning,

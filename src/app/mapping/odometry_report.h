@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace patrol::app {
 /// Health of the odometry of a log, as told to the user. Times are seconds since the first scan, positions are in map.
 struct OdometryReport {
   slam::OdometryHealth health;
-  std::vector<Time> stamps;  ///< [scan]
+  std::vector<Time> stamps;          ///< [scan]
+  std::size_t num_frozen_scans = 0;  ///< scans of a frozen lidar (slam/consistency/frozen_scans.h)
 
   /// Result in one line: "odometry agrees: ...", "odometry is mostly constant: ..." and others.
   std::string line() const;

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "slam/graph/branch_and_bound.h"
+#include "slam/graph/connections.h"
 #include "slam/surface_overlap.h"
 
 namespace patrol::slam {
@@ -30,7 +30,7 @@ constexpr double kMinGain = 0.2, kMinOffset_m = 0.3, kLever_m = 3.0;
 constexpr std::size_t kCachedSegments = 64;
 constexpr int kMinReturns = 3;
 constexpr double kMinMatchScore = 0.3;
-constexpr double kMaxUnmatchedRatio = 0.2;
+constexpr double kMaxUnmatchedRatio = 0.2, kMaxWithoutReturnsRatio = 0.2;
 /// Length of the path without a matched scan above which it is interrupted.
 constexpr double kMaxUntracked_m = 2.0;
 
@@ -71,24 +71,6 @@ double score_at(const LikelihoodPyramid& map, const std::vector<Eigen::Vector2d>
   return sum / (LikelihoodPyramid::kOnSurface * static_cast<double>(points.size()));
 }
 
-/// Segments that are connected with each other.
-class Connections {
- public:
-  explicit Connections(std::size_t num_segments) : parent_(num_segments) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  void connect(std::size_t a, std::size_t b) { parent_[root(a)] = root(b); }
-  bool are_connected(std::size_t a, std::size_t b) { return root(a) == root(b); }
-
- private:
-  std::size_t root(std::size_t s) {
-    while (parent_[s] != s) s = parent_[s] = parent_[parent_[s]];
-    return s;
-  }
-
-  std::vector<std::size_t> parent_;
-};
-
 /// Result of comparing two segments.
 struct Comparison {
   bool is_overlapping = false;
@@ -117,9 +99,11 @@ Comparison compare(const RenderedSubmap& a, const RenderedSubmap& b, const Pose2
 
 bool MapConsistency::has_too_many_unmatched() const { return unmatched_ratio() > kMaxUnmatchedRatio; }
 
+bool MapConsistency::has_too_many_without_returns() const { return without_returns_ratio() > kMaxWithoutReturnsRatio; }
+
 bool MapConsistency::is_consistent() const {
-  return num_compared > 0 && disagreements.empty() && unconnected.empty() && unsupported.empty() &&
-         !has_too_many_unmatched();
+  return num_compared > 0 && disagreements.empty() && unconnected.empty() && unsupported.empty() && frozen.empty() &&
+         !has_too_many_unmatched() && !has_too_many_without_returns();
 }
 
 void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
@@ -127,8 +111,9 @@ void ConsistencyCheck::add(const LevelScan& scan, const SlamUpdate& update) {
       std::count_if(scan.beams.begin(), scan.beams.end(), [](const LevelScan::Beam& beam) { return beam.is_hit; });
   const bool is_first = scans_.empty();
   max_beams_ = std::max(max_beams_, scan.beams.size());
+  const bool has_returns = returns >= kMinReturns;
   const bool is_unmatched = !is_first && update.match_score && *update.match_score < kMinMatchScore;
-  scans_.push_back({.has_returns = returns >= kMinReturns, .is_matched = !is_unmatched});
+  scans_.push_back({.has_returns = has_returns, .is_matched = has_returns && !is_unmatched});
   if (!kept_.empty()) {
     const Pose2 moved = kept_.back().T_local_body.inverse() * update.T_map_body;
     if (moved.position().norm() < kKeptDistance_m && std::abs(moved.yaw) < kKeptAngleRad) return;
@@ -158,8 +143,16 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
                                        const std::vector<Keyframe>& earlier) const {
   MapConsistency result;
   bool continues = false;
+  UnmatchedSegment without_returns;
   for (std::size_t i = 0; i < scans_.size(); ++i) {
-    if (!scans_[i].has_returns) continue;
+    if (!scans_[i].has_returns) {
+      ++result.num_without_returns;
+      if (without_returns.num_scans == 0) without_returns = {.first_scan = i, .p_map = T_map_body[i].position()};
+      if (++without_returns.num_scans > result.max_without_returns.num_scans)
+        result.max_without_returns = without_returns;
+      continue;
+    }
+    without_returns = {};
     ++result.num_scans;
     if (!scans_[i].is_matched) {
       ++result.num_unmatched;

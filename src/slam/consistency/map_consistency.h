@@ -51,14 +51,24 @@ struct MapConsistency {
   std::vector<UnmatchedSegment> unmatched_segments = {};  ///< most scans first
   std::vector<UnconnectedPart> unconnected = {};          ///< earliest first
   std::vector<UnsupportedPath> unsupported = {};          ///< most scans first; ConsistencyCheck leaves it empty
+  std::size_t num_without_returns = 0;                    ///< scans with fewer than 3 returns, besides `num_scans`
+  UnmatchedSegment max_without_returns = {};              ///< most consecutive scans without returns
+  /// Scans of a frozen lidar (frozen_scans.h), most scans first; ConsistencyCheck leaves it empty.
+  std::vector<UnmatchedSegment> frozen = {};
 
   double unmatched_ratio() const {
     return num_scans == 0 ? 0.0 : static_cast<double>(num_unmatched) / static_cast<double>(num_scans);
   }
-  bool has_too_many_unmatched() const;  ///< more than a fifth of the scans
-  /// Whether nothing indicates a wrong map: segments could be compared and agree, most scans matched, scans connect all
-  /// parts of the path, and scans or odometry support it. A map can be consistent and wrong, for example if a loop was
-  /// not closed and its ends do not overlap in the map.
+  /// Fraction of all scans that have no returns.
+  double without_returns_ratio() const {
+    const std::size_t num_all = num_scans + num_without_returns;
+    return num_all == 0 ? 0.0 : static_cast<double>(num_without_returns) / static_cast<double>(num_all);
+  }
+  bool has_too_many_unmatched() const;        ///< more than a fifth of the scans
+  bool has_too_many_without_returns() const;  ///< more than a fifth of the scans
+  /// Whether nothing indicates a wrong map: segments could be compared and agree, most scans have returns and matched,
+  /// none is of a frozen lidar, scans connect all parts of the path, and scans or odometry support it. A map can be
+  /// consistent and wrong, for example if a loop was not closed and its ends do not overlap in the map.
   bool is_consistent() const;
 };
 
@@ -67,7 +77,8 @@ struct MapConsistency {
 /// the other, where it has observed cells, and if a search within 2 m and 0.2 rad finds a pose at which clearly more
 /// of them do. Both are necessary: people and furniture move, and smooth corridors match anywhere along them.
 ///
-/// The path is interrupted where it has no matched scan for more than 2 m, or consecutive scans are further apart. Its
+/// The path is interrupted where it has no matched scan for more than 2 m, or consecutive scans are further apart. A
+/// scan without returns is not matched. Its
 /// parts are connected if a segment of each agrees with one of the other.
 class ConsistencyCheck {
  public:

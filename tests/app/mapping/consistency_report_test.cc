@@ -51,6 +51,33 @@ TEST(ConsistencyReport, OfAThirdOfTheScansUnmatchedIsBadAndNamesTheLongestSegmen
   EXPECT_EQ(result.metrics()["unmatched_segments"][1]["from_s"], 80.0);
 }
 
+TEST(ConsistencyReport, OfScansWithoutReturnsNamesTheirRatioAndIsBadAboveAFifth) {
+  slam::MapConsistency map{.num_compared = 12, .num_scans = 80, .num_without_returns = 20};
+  EXPECT_EQ(report_of(map).line(),
+            "consistent: 12 pairs of segments agree, 0.0 % of the scans matched no surfaces, 20.0 % have no returns");
+  map.num_scans = 70;
+  map.num_without_returns = 30;
+  map.max_without_returns = {.first_scan = 20, .num_scans = 25, .p_map = {3.0, 4.0}};
+  const ConsistencyReport result = report_of(map);
+  EXPECT_EQ(result.line(), "look at (3.0, 4.0): 30 % of the scans have no returns, at most 25 in a row, from 20 s");
+  EXPECT_EQ(result.block().tone, Tone::kBad);
+  EXPECT_EQ(result.marks().size(), 1U);
+  EXPECT_EQ(result.metrics()["consistent"], false);
+  EXPECT_EQ(result.metrics()["scans_without_returns"], 30);
+}
+
+TEST(ConsistencyReport, OfAFrozenLidarIsBadAndNamesPlaceAndTime) {
+  const ConsistencyReport result = report_of(
+      {.num_compared = 12,
+       .num_scans = 100,
+       .frozen = {{.first_scan = 40, .num_scans = 25, .p_map = {3.0, 4.0}}, {.first_scan = 80, .num_scans = 5}}});
+  EXPECT_EQ(result.line(),
+            "look at (3.0, 4.0): the lidar is frozen: 30 scans repeat the one before while odometry moves, from 40 s");
+  EXPECT_EQ(result.marks().size(), 2U);
+  EXPECT_EQ(result.metrics()["consistent"], false);
+  EXPECT_EQ(result.metrics()["frozen_segments"][1]["scans"], 5);
+}
+
 TEST(ConsistencyReport, OfAPathThatNothingSupportsIsBadAndNamesPlaceTimeAndContradiction) {
   const ConsistencyReport result = report_of(
       {.num_compared = 12,

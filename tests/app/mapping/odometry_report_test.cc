@@ -88,6 +88,14 @@ TEST(OdometryReport, ByAPathThatIsThatOfOdometryIsNotChecked) {
   EXPECT_EQ(report_of(health).block().word, "odometry agrees");
 }
 
+TEST(OdometryReport, WithAFrozenLidarOverATenthOfTheScansIsNotChecked) {
+  OdometryReport result = report_of(healthy());
+  result.num_frozen_scans = 10;
+  EXPECT_EQ(result.line(), "odometry not checked: the lidar is frozen: 10 of 100 scans repeat the one before");
+  result.num_frozen_scans = 5;
+  EXPECT_EQ(result.block().word, "odometry agrees");
+}
+
 TEST(OdometryReport, WithoutMotionIsNotChecked) {
   EXPECT_EQ(report_of(slam::OdometryHealth{}).line(),
             "odometry not checked: it hardly moves, and neither does the robot in the map");

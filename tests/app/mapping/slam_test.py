@@ -225,6 +225,30 @@ class Slam(unittest.TestCase):
             self.assertEqual(done.stderr.count("\n"), 1 if warning else 0)
             self.assertIn(f"patrol: {graph}: {warning}" if warning else "", done.stderr)
 
+    def ranges_replaced(self, ranges_of):
+        """The log with the ranges of line k by `ranges_of(k)`."""
+        lines = []
+        for k, line in enumerate(self.lines):
+            words = line.split()
+            lines.append(" ".join(words[:2] + ranges_of(k) + words[182:]))
+        return "\n".join(lines) + "\n"
+
+    def test_a_log_half_of_whose_scans_have_no_returns_is_not_consistent(self):
+        log = self.folder / "dead.log"
+        log.write_text(self.ranges_replaced(lambda k: ["81.83"] * 180 if k > len(self.lines) // 2 else self.lines[k].split()[2:182]))
+        out = self.map("dead", log=log)
+        metrics = json.loads((out / "metrics.json").read_text())["consistency"]
+        self.assertFalse(metrics["consistent"])
+        self.assertAlmostEqual(metrics["scans_without_returns"], len(self.lines) / 2, delta=2)
+
+    def test_a_frozen_lidar_is_named_and_odometry_is_not_blamed(self):
+        first = len(self.lines) // 2
+        log = self.folder / "frozen.log"
+        log.write_text(self.ranges_replaced(lambda k: self.lines[min(k, first)].split()[2:182]))
+        done = self.patrol("slam", log, "--out", self.folder / "frozen")
+        self.assertIn(f": the lidar is frozen: {len(self.lines) - first - 1} scans repeat the one before while odometry moves", done.stdout)
+        self.assertIn("odometry not checked: the lidar is frozen", done.stdout)
+
     def refuse(self, text, *says, more=()):
         damaged = self.folder / "damaged.log"
         damaged.write_text(text)

@@ -136,6 +136,34 @@ TEST(MapConsistency, AfterAGapOf12MetersIsUnconnectedUntilASecondLapSeesBothSide
   EXPECT_TRUE(whole.is_consistent());
 }
 
+TEST(MapConsistency, ScansWithoutReturnsAreCountedAndAQuarterOfThemIsTooMany) {
+  const test::RoomWorld office = test::make_office();
+  const RandomStream noise(1, "test/consistency");
+  const std::vector<test::DriveStep> steps = test::drive_along(test::office_rounds(2), {.speed_mps = 1.5});
+  const auto drive_with = [&](std::size_t num_without_returns) {
+    Drive drive;
+    for (const test::DriveStep& step : steps) {
+      const std::size_t k = drive.T_map_body.size();
+      LevelScan scan = office.scan(step.T_world_body, step.stamp, test::kOldLidar, noise, k);
+      const bool has_returns = k < 10 || k >= 10 + num_without_returns;
+      for (LevelScan::Beam& beam : scan.beams) beam.is_hit = beam.is_hit && has_returns;
+      SlamUpdate update{.T_map_body = step.T_world_body};
+      if (has_returns) update.match_score = 0.9;
+      drive.T_map_body.push_back(step.T_world_body);
+      drive.check.add(scan, update);
+    }
+    return drive.check.check(drive.T_map_body);
+  };
+  const MapConsistency few = drive_with(5), many = drive_with(steps.size() / 4);
+  EXPECT_TRUE(few.is_consistent());
+  EXPECT_EQ(few.num_without_returns, 5U);
+  EXPECT_EQ(few.max_without_returns.first_scan, 10U);
+  EXPECT_EQ(few.max_without_returns.num_scans, 5U);
+  EXPECT_EQ(few.num_unmatched, 0U);
+  EXPECT_TRUE(many.has_too_many_without_returns());
+  EXPECT_FALSE(many.is_consistent());
+}
+
 TEST(MapConsistency, OfAMethodWithoutMatchScoresCountsNoScanAsUnmatched) {
   const test::RoomWorld office = test::make_office();
   const RandomStream noise(1, "test/consistency");
