@@ -294,7 +294,7 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
       SiteFileImport("a.fbx", "").error(),
       "a.fbx: extension of a site file must be one of .yaml, .mcap, .clf, .log, .gz, .gltf, .glb, .obj, .dae, "
       ".stl, .sdf, .world, .xml, "
-      ".ply, .pcd, .las, .laz, .xyz, .pts, .asc, .csv, .txt, .sdf.xacro, .world.xacro; a folder must contain scans");
+      ".ply, .pcd, .las, .laz, .xyz, .pts, .asc, .csv, .txt, .e57, .sdf.xacro, .world.xacro; a folder must contain scans");
   SiteFileImport large("a.obj", to_obj(room));
   large.options.scale = 1e5;
   EXPECT_EQ(large.error(),
