@@ -71,7 +71,7 @@ class BadInput(unittest.TestCase):
         self.refuse("run", "--from", "base@1e300", "--out", self.out, says=["--from base@1e300: must be RUN@SECONDS"])
         self.refuse("trace", "base", "--to-s", "nan", says=["--to-s", "nan"])
         self.refuse("trace", "base", "--to-s", "-1", says=["--to-s", "-1: must be at least 0"])
-        self.refuse("score", "--estimate", "a", "--reference", "b", "--max-dt-s", "-1", says=["max_dt_s"])
+        self.refuse("score", "--estimate", "a", "--reference", "b", "--max-dt-s", "-1", says=["--max-dt-s: Value -1 not in range"])
 
     def test_a_snapshot_period_below_one_tick(self):
         for period_s in ("1e-09", "0.0019"):

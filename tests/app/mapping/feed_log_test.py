@@ -260,7 +260,7 @@ class FeedLog(unittest.TestCase):
                                 ((self.log, "--reference", self.folder / "nothing.tum"), "nothing.tum"),
                                 ((self.log, "--set", "slam.methd=rbpf"), "slam.methd"),
                                 ((self.log, "--stack", "no_such_program"), "no_such_program"),
-                                ((self.log, "--max-dt-s", "-1"), "max_dt_s"),
+                                ((self.log, "--max-dt-s", "-1"), "--max-dt-s: Value -1 not in range"),
                                 ((run, "--relations", self.relations), "only for a recorded log"),
                                 ((run, "--set", "world=tunnel"), "--set world=tunnel: must be stack."),
                                 ((run, "--set", "stack.command=true"), "--stack selects the stack")]:

@@ -294,7 +294,7 @@ class Plan(unittest.TestCase):
             ((TUNNEL, "--from", "0,0", "--to", "nan,3"), ["--to: nan,3"]),
             ((TUNNEL, "--from", "0", "--to", "1,3"), ["--from: 0:"]),
             ((TUNNEL, *there, "--planner", "crow"), ["crow", "theta_star"]),
-            ((TUNNEL, *there, "--robot", "hovering"), ["--robot", "hovering", "cart, quadruped, tracked, wheeled"]),
+            ((TUNNEL, *there, "--robot", "hovering"), ["robot = hovering", "cart, quadruped, tracked, wheeled"]),
             ((TUNNEL, *there, "--radius-m", "-1"), ["--radius-m"]),
             ((TUNNEL, *there, "--robot", "tracked", "--radius-m", "1"), ["--robot and --radius-m"]),
             ((TUNNEL, *there, "--set", "routes.ant_colony.antz=3"), ["routes.ant_colony.antz", "ants"]),

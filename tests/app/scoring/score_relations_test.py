@@ -82,7 +82,7 @@ class ScoreRelations(unittest.TestCase):
     def test_bad_calls_and_files_are_2_with_one_line(self):
         good = "976052857 976052858 1 0 0 0 0 0\n"
         for done, says in ((self.score(good + "1 2 x\n"), "f.relations:2: x 'x' is not a finite number"),
-                           (self.score(good, "--max-dt-s", "-1"), "max_dt_s = -1: must be in [0, 10]"),
+                           (self.score(good, "--max-dt-s", "-1"), "--max-dt-s: Value -1 not in range"),
                            (self.score("# nothing\n"), "contains no relations"),
                            (subprocess.run([PATROL, "score", "--relations", "f"], capture_output=True, text=True, timeout=60), "--estimate and --relations")):
             self.assertEqual(done.returncode, 2, done.stderr)
