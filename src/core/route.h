@@ -71,6 +71,12 @@ struct Route {
   std::vector<UwbAnchor> anchors = {};                            ///< positions in the frame of the route
   std::optional<Dock> dock = {};
   std::optional<TunnelLining> lining = {};
+
+  std::vector<std::string> station_names() const {
+    std::vector<std::string> names;
+    for (const Station& station : stations) names.push_back(station.name);
+    return names;
+  }
 };
 
 /// Goal pose in `map`, saved while a person drove the robot there: an entry of nav.json [Liu21, table 1].
@@ -79,6 +85,9 @@ struct SavedGoal {
   Pose2 T_map_body;
   GoalType type = GoalType::kStop;
   double accuracy_m = 0.1;  ///< position tolerance
+
+  /// Returns the name in events, metrics and results, e.g. "goal_2".
+  std::string name() const { return "goal_" + std::to_string(number); }
 };
 
 }  // namespace patrol

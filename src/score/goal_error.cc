@@ -29,8 +29,7 @@ void add_arrival(const Event& event, const TrueGoal& goal, const Trajectory& T_w
 std::map<std::string, TrueGoal> true_goals(const std::vector<Event>& events, const std::vector<SavedGoal>& given,
                                            const Pose2& T_world_map, const Trajectory& T_world_body) {
   std::map<std::string, TrueGoal> goals;
-  for (const SavedGoal& goal : given)
-    goals["goal_" + std::to_string(goal.number)] = {T_world_map * goal.T_map_body, goal.accuracy_m};
+  for (const SavedGoal& goal : given) goals[goal.name()] = {T_world_map * goal.T_map_body, goal.accuracy_m};
   for (const Event& event : events) {
     if (event.kind == EventKind::kGoalSaved)
       goals[event.subject] = {true_pose_of(event, T_world_body), SavedGoal{}.accuracy_m};

@@ -277,8 +277,8 @@ class BadInput(unittest.TestCase):
             self.assertEqual(file.read_text(), "mine")
 
     def test_a_sweep_of_an_unknown_robot(self):
-        self.refuse_variants("sweep", "--vary", "robot=quadruped,nobody", says=["robot = nobody: ", "not found (known: cart, quadruped"])
-        self.refuse_variants("sweep", "--set", "robot=nobody", says=["robot = nobody: ", "not found (known: cart, quadruped"])
+        self.refuse_variants("sweep", "--vary", "robot=quadruped,hovering", says=["robot = hovering: ", "not found (known: cart, quadruped"])
+        self.refuse_variants("sweep", "--set", "robot=hovering", says=["robot = hovering: ", "not found (known: cart, quadruped"])
 
     def test_a_sweep_metric_of_an_unknown_station(self):
         self.refuse_variants("sweep", "--metric", "stations.nowhere.reached", says=["--metric stations.nowhere.reached: unknown station nowhere: must be one of "])

@@ -64,11 +64,11 @@ void add_association(CLI::App& command, AssociationOptions& association) {
       .add_option("--max-dt-s", association.max_dt_s,
                   "Maximum time difference for nearest-pose association, s (default: 0.02 for relations, 0.01 for "
                   "the alignment to a reference)")
-      ->check(CLI::Range(0.0, 10.0));  // limits of score::RelationSettings
+      ->check(CLI::Range(0.0, score::RelationSettings::kMaxDt_s));
   command
       .add_option("--reference-x-m", association.reference_x_m,
                   "Offset of the relations' reference point along body x, m")
-      ->check(CLI::Range(-10.0, 10.0))
+      ->check(CLI::Range(-score::RelationSettings::kMaxReference_m, score::RelationSettings::kMaxReference_m))
       ->capture_default_str();
 }
 

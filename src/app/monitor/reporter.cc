@@ -57,8 +57,7 @@ Json stations_of(const ScenarioFiles& files) {
   };
   const Route route = inspect::to_map(files.route, files.T_site_start);
   for (const Station& station : route.stations) add(station.name, name_of(station.type), station.T_route_body);
-  for (const SavedGoal& goal : files.goals)
-    add(fmt::format("goal_{}", goal.number), name_of(goal.type), goal.T_map_body);
+  for (const SavedGoal& goal : files.goals) add(goal.name(), name_of(goal.type), goal.T_map_body);
   if (route.dock) add("dock", "dock", route.dock->T_route_docked);
   return list;
 }

@@ -62,7 +62,7 @@ struct LogOnSite {
   Trajectory T_site_body;
   std::optional<Pose3> T_body_lidar;  ///< of a run: by the robot's description, and with its true path as built;
                                       ///< none: planar, by the log
-  /// Of the preset; of a run with its true path, with the tilt and the cone of the beams as built.
+  /// Lidar of the preset. For a run on its true path, it has the tilt and the cone of the beams as built.
   realism::LidarDevice device;
 };
 

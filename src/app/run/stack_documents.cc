@@ -123,10 +123,9 @@ std::set<std::string> topics_without_instrument(const sim::SensorSuiteSettings& 
 }
 
 EventSubjects subjects_of(const ScenarioFiles& files) {
-  std::vector<std::string> stations, goals;
-  for (const Station& station : files.route.stations) stations.push_back(station.name);
-  for (const SavedGoal& goal : files.goals) goals.push_back(fmt::format("goal_{}", goal.number));
-  return {std::move(stations), std::move(goals)};
+  std::vector<std::string> goals;
+  for (const SavedGoal& goal : files.goals) goals.push_back(goal.name());
+  return {files.route.station_names(), std::move(goals)};
 }
 
 }  // namespace

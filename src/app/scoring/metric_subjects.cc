@@ -33,12 +33,6 @@ void check_name(const std::string& location, const char* subject, const std::str
                                nearest.empty() ? "" : "; did you mean " + nearest + "?", join(known, ", ")));
 }
 
-std::vector<std::string> stations_of(const Route& route) {
-  std::vector<std::string> names;
-  for (const Station& station : route.stations) names.push_back(station.name);
-  return names;
-}
-
 /// Names of the calibration parameters, with those of the anchors.
 std::vector<std::string> parameters_of(const Route& route) {
   std::vector<std::string> names = names_of(kCalibrationParameters);
@@ -65,7 +59,7 @@ void MetricSubjects::check(const std::string& location, const std::string& metri
   if (!route_) route_ = load_route(scenario_, find_data_root(file_));
   const std::string name = open_part(metric, pattern);
   if (is_of_parameter) check_name(location, "parameter", name, parameters_of(*route_));
-  else if (!is_index(name, route_->stations.size())) check_name(location, "station", name, stations_of(*route_));
+  else if (!is_index(name, route_->stations.size())) check_name(location, "station", name, route_->station_names());
 }
 
 }  // namespace patrol::app

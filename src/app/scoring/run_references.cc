@@ -96,7 +96,7 @@ std::vector<score::MissionGoal> mission_goals(const Scenario& scenario, const Sc
   }
   for (const SavedGoal& goal : files.goals) {
     if (!files.map) break;  // the pose of a map that the run makes is not given
-    goals.push_back({.name = fmt::format("goal_{}", goal.number),
+    goals.push_back({.name = goal.name(),
                      .arrival = EventKind::kGoalReached,
                      .p_world_m = (files.T_site_map() * goal.T_map_body).position(),
                      .accuracy_m = goal.accuracy_m,

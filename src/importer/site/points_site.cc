@@ -240,7 +240,7 @@ void check_points_on_surfaces(const io::RelativePoints& cloud, const CloudPatche
   }
 }
 
-SortedScans sorted_scans(std::vector<io::StationScan>& scans, const SiteImportOptions& options) {
+SortedScans sort_with_progress(std::vector<io::StationScan>& scans, const SiteImportOptions& options) {
   const auto progress = progress_of(options);
   const auto num_scans = static_cast<double>(scans.size());
   return sort_scans(scans, upright(options), unit_of_points(options), [&](std::size_t i) {
@@ -309,7 +309,7 @@ ImportedSite read_scans_site(const SiteImportOptions& options) {
   check_precision(file.scans.origin, file.step, location, unit_m);
   std::string reason = "a scan has no pose";
   if (file.has_scanners) {
-    SortedScans sorted = sorted_scans(file.scans.scans, options);
+    SortedScans sorted = sort_with_progress(file.scans.scans, options);
     if (sorted.problem.empty())
       return site_of_panoramas(sorted, file.scans.origin, file.scans.num_dropped, source, options);
     reason = sorted.problem;
@@ -328,7 +328,7 @@ ImportedSite read_cloud_site(const SiteImportOptions& options) {
 
 ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options) {
   if (scans.scans.empty()) throw InputError(error_location(options, source) + ": has no scans");
-  SortedScans sorted = sorted_scans(scans.scans, options);
+  SortedScans sorted = sort_with_progress(scans.scans, options);
   if (!sorted.problem.empty()) throw InputError(fmt::format("{}: {}", error_location(options, source), sorted.problem));
   return site_of_panoramas(sorted, scans.origin, scans.num_dropped, source, options);
 }

@@ -11,14 +11,15 @@ namespace patrol::score {
 
 /// Assignment of trajectory poses to the stamps of relations.
 struct RelationSettings {
+  static constexpr double kMaxDt_s = 10.0, kMaxReference_m = 10.0;  ///< limits of the settings
   /// maximum distance in time at which the nearest pose is used; beyond it the pose is interpolated
   double max_dt_s = 0.02;
   double reference_x_m = 0.0;  ///< x offset of the relations' reference point in the trajectory's body frame
 
   template <typename Self, typename Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("max_dt_s", self.max_dt_s, between(0.0, 10.0));
-    visit("ref_x_m", self.reference_x_m, between(-10.0, 10.0));
+    visit("max_dt_s", self.max_dt_s, between(0.0, kMaxDt_s));
+    visit("ref_x_m", self.reference_x_m, between(-kMaxReference_m, kMaxReference_m));
   }
 };
 

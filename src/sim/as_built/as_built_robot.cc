@@ -74,16 +74,14 @@ DeviceClock AsBuiltRobot::clock(const std::string& device) const {
 LidarErrors AsBuiltRobot::lidar(const std::string& frame) const {
   if (!settings_.enabled) return {};
   const LidarTolerances& lidar = settings_.lidar;
-  const double measured_ratio = frame == "lidar" ? 1.0 : 0.0;  // the calibration is that of one device
+  const LidarTolerances measured = frame == "lidar" ? lidar : LidarTolerances{};  // the calibration is of one device
   const std::string term = "lidar/" + frame + "/";
   const double tilt_rad = to_rad(lidar.axis_tilt_deg), cone_rad = to_rad(lidar.cone_deg);
   return {.noise_ratio = lidar.noise_ratio,
-          .range_offset_m =
-              measured_ratio * lidar.measured_range_offset_m + uniform(term + "range_offset", lidar.range_offset_m),
-          .range_scale = measured_ratio * lidar.measured_range_scale + uniform(term + "range_scale", lidar.range_scale),
-          .reflectivity_m =
-              measured_ratio * lidar.measured_reflectivity_m + uniform(term + "reflectivity", lidar.reflectivity_m),
-          .incidence_m = measured_ratio * lidar.measured_incidence_m + uniform(term + "incidence", lidar.incidence_m),
+          .range_offset_m = measured.measured_range_offset_m + uniform(term + "range_offset", lidar.range_offset_m),
+          .range_scale = measured.measured_range_scale + uniform(term + "range_scale", lidar.range_scale),
+          .reflectivity_m = measured.measured_reflectivity_m + uniform(term + "reflectivity", lidar.reflectivity_m),
+          .incidence_m = measured.measured_incidence_m + uniform(term + "incidence", lidar.incidence_m),
           .axis_tilt_x_rad = uniform(term + "axis_tilt", tilt_rad, 0),
           .axis_tilt_y_rad = uniform(term + "axis_tilt", tilt_rad, 1),
           .cone_rad = 0.5 * (cone_rad + uniform(term + "cone", cone_rad)),

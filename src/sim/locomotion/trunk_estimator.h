@@ -52,8 +52,8 @@ class TrunkEstimator {
   double tick_s_;
   double age_s_ = 0.0;  ///< time since switch-on
   Eigen::Vector3d up_in_body_ = Eigen::Vector3d::UnitZ();
-  FootVectors foot_roll_mps_ =
-      zeros<FootVectors>();  ///< velocity of a foot's center as it rolls over its contact, in level
+  /// Velocity of a foot's center as it rolls over its contact, in level.
+  FootVectors foot_roll_mps_ = zeros<FootVectors>();
   TrunkState state_;
 };
 

@@ -104,8 +104,7 @@ bool GasMission::monitor_localization(const MissionInput& input, MissionOutput& 
 
 void GasMission::wait(const MissionInput& input, MissionOutput& output) {
   if (now_ < from_seconds(settings_.init_wait_s) || input.awaits_first_scan) return;
-  std::vector<std::string> names;
-  for (const Station& station : route_.stations) names.push_back(station.name);
+  const std::vector<std::string> names = route_.station_names();
   const std::string stations = fmt::format("Mission started: {} stations, {}.", names.size(), join(names, ", "));
   output.events.push_back(
       event(EventKind::kMissionStarted, "", order_text_.empty() ? stations : stations + " " + order_text_));

@@ -256,7 +256,7 @@ std::vector<Event> TunnelMission::correct_map(Time now, const localize::MapCorre
     T_map_goal = correction.at(saved_[i]) * T_map_goal;
     events.push_back({.stamp = now,
                       .kind = EventKind::kGoalMoved,
-                      .subject = fmt::format("goal_{}", goals_[i].number),
+                      .subject = goals_[i].name(),
                       .text = fmt::format("Moved goal_{} with the map.", goals_[i].number),
                       .T_map_body = T_map_goal,
                       .p_map_target = T_map_goal.position()});
@@ -287,6 +287,6 @@ Event TunnelMission::event(EventKind kind, const std::string& subject, const std
 
 std::string TunnelMission::sounding_name() const { return fmt::format("sounding_{}", num_soundings_); }
 
-std::string TunnelMission::goal_name() const { return fmt::format("goal_{}", goals_[goal_].number); }
+std::string TunnelMission::goal_name() const { return goals_[goal_].name(); }
 
 }  // namespace patrol::stack

@@ -290,11 +290,11 @@ TEST(MeshSite, BrokenFilesAreRefusedByOneLine) {
   SiteFileImport absent("a.obj", "");
   absent.options.file = absent.folder / "b.obj";
   EXPECT_EQ(absent.error(), "b.obj: mesh file not found");
-  EXPECT_EQ(
-      SiteFileImport("a.fbx", "").error(),
-      "a.fbx: extension of a site file must be one of .yaml, .mcap, .clf, .log, .gz, .gltf, .glb, .obj, .dae, "
-      ".stl, .sdf, .world, .xml, "
-      ".ply, .pcd, .las, .laz, .xyz, .pts, .asc, .csv, .txt, .e57, .sdf.xacro, .world.xacro; a folder must contain scans");
+  EXPECT_EQ(SiteFileImport("a.fbx", "").error(),
+            "a.fbx: extension of a site file must be one of .yaml, .mcap, .clf, .log, .gz, .gltf, .glb, .obj, .dae, "
+            ".stl, .sdf, .world, .xml, "
+            ".ply, .pcd, .las, .laz, .xyz, .pts, .asc, .csv, .txt, .e57, .sdf.xacro, .world.xacro; a folder must "
+            "contain scans");
   SiteFileImport large("a.obj", to_obj(room));
   large.options.scale = 1e5;
   EXPECT_EQ(large.error(),

@@ -79,8 +79,8 @@ TEST(PlanSweep, AMissionFromElsewhereIsKnownByWhatStandsInIt) {
 
 TEST(PlanSweep, AnUnknownRobotIsRefusedWithTheKnownOnes) {
   EXPECT_THAT(
-      [] { plan_sweep(street({"robot=quadruped,nobody"})); },
-      ::testing::ThrowsMessage<InputError>(::testing::AllOf(HasSubstr("robot = nobody"), HasSubstr("known: "))));
+      [] { plan_sweep(street({"robot=quadruped,hovering"})); },
+      ::testing::ThrowsMessage<InputError>(::testing::AllOf(HasSubstr("robot = hovering"), HasSubstr("known: "))));
 }
 
 TEST(PlanSweep, AMetricOfAStationThatNoVariantHasIsRefused) {
