@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -84,7 +85,7 @@ std::optional<Eigen::Vector3d> joint_angles(const LegGeometry& leg, const Eigen:
   const double abduction = std::atan2(p.z(), p.y()) - std::atan2(z, offset);
   const auto angles = planar_leg_angles(leg.thigh_m, leg.shank_m, p.x(), z, true);
   if (!angles) return std::nullopt;
-  return Eigen::Vector3d(std::remainder(abduction, 2.0 * M_PI), angles->hip_rad, angles->knee_rad);
+  return Eigen::Vector3d(std::remainder(abduction, 2.0 * std::numbers::pi), angles->hip_rad, angles->knee_rad);
 }
 
 }  // namespace patrol

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -43,7 +44,7 @@ double within_steering_limits(const RobotDescription& robot, double forward_mps,
     const bool is_to_left = (yaw_rate_radps > 0.0) == (forward_mps > 0.0);
     const bool is_positive = (is_to_left == (lever_m > 0.0)) == (wheel.left_sign > 0.0);
     const double max_angle = is_positive ? limit.upper_rad : -limit.lower_rad;
-    if (max_angle >= 0.5 * M_PI) continue;
+    if (max_angle >= 0.5 * std::numbers::pi) continue;
     // tan(angle) = w lever / (v - w y), with w of the sign of the turn.
     const double tangent = std::tan(std::max(0.0, max_angle));
     const double y_m = is_to_left ? wheel.center_in_body.y() : -wheel.center_in_body.y();
@@ -158,7 +159,7 @@ void add_rollers(RollerPattern pattern, double angle_rad, RobotDescription& robo
     num_left += wheel.is_left() ? 1 : 0;
     if (is_front) ++(wheel.is_left() ? num_front_left : num_front_right);
     const bool is_to_right = (is_front == wheel.is_left()) == (pattern == RollerPattern::kX);
-    wheel.roller_axis_rad = (is_to_right ? -1.0 : 1.0) * (0.5 * M_PI - angle_rad);
+    wheel.roller_axis_rad = (is_to_right ? -1.0 : 1.0) * (0.5 * std::numbers::pi - angle_rad);
   }
   if (num_left != 2 || num_front_left != 1 || num_front_right != 1)
     fail("each side must have a front and a rear wheel");

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -75,7 +76,7 @@ double length_xz(const Eigen::Vector3d& v) { return std::hypot(v.x(), v.z()); }
 
 /// Returns the angle within the limits that is equal modulo a turn and nearest to zero; nullopt if there is none.
 std::optional<double> angle_within(double angle_rad, const JointLimit& limit) {
-  constexpr double kTurn_rad = 2.0 * M_PI;
+  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   const double nearest = std::remainder(angle_rad, kTurn_rad);
   for (const double turns : {0.0, -1.0, 1.0}) {
     const double angle = nearest + turns * kTurn_rad;
@@ -154,7 +155,7 @@ void UrdfReader::choose_standing(const std::array<JointLimit, 3>& limits, double
   const Eigen::Vector3d roll_axis = zero.axis[abduction];
   const Eigen::Vector3d across = zero.axis[knee] - zero.axis[knee].dot(roll_axis) * roll_axis;
   double roll_rad = std::atan2(roll_axis.dot(across.cross(Eigen::Vector3d::UnitY())), across.y());
-  if (std::abs(roll_rad) > 0.5 * M_PI) roll_rad -= std::copysign(M_PI, roll_rad);
+  if (std::abs(roll_rad) > 0.5 * std::numbers::pi) roll_rad -= std::copysign(std::numbers::pi, roll_rad);
   Eigen::Vector3d angles = Eigen::Vector3d::Zero();
   angles[static_cast<Eigen::Index>(abduction)] = roll_rad;
   const LegChainState start = chain_state(*leg.chain, angles);
@@ -304,7 +305,7 @@ std::vector<Eigen::Vector2d> UrdfReader::read_legged_footprint(const RobotDescri
   for (const LegGeometry& leg : robot.legs) {
     const Eigen::Vector3d foot = foot_position(leg, leg.standing_rad);
     for (int corner = 0; corner < 8; ++corner) {
-      const double angle = corner * M_PI / 4.0;
+      const double angle = corner * std::numbers::pi / 4.0;
       points.emplace_back(foot.head<2>() + leg.foot_radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
     }
   }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -161,7 +162,7 @@ std::vector<Eigen::Vector3d> UrdfReader::outline_points(const urdf::Geometry& ge
   constexpr int kNumOnCircle = 16;
   const auto add_circle = [&points](double radius_m, double z_m) {
     for (int i = 0; i < kNumOnCircle; ++i) {
-      const double angle = 2.0 * M_PI * i / kNumOnCircle;
+      const double angle = 2.0 * std::numbers::pi * i / kNumOnCircle;
       points.emplace_back(radius_m * std::cos(angle), radius_m * std::sin(angle), z_m);
     }
   };

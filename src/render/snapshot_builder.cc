@@ -1,6 +1,7 @@
 #include "render/snapshot_builder.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -119,7 +120,7 @@ std::vector<Eigen::Vector3d> SnapshotBuilder::outline_on_scenery(const Eigen::Ve
   const Eigen::Vector3d up = right.cross(line_of_sight).stableNormalized();
   std::vector<Eigen::Vector3d> outline;
   for (int i = 0; i <= kNumPoints; ++i) {
-    const double angle = 2.0 * M_PI * i / kNumPoints;
+    const double angle = 2.0 * std::numbers::pi * i / kNumPoints;
     const Eigen::Vector3d direction =
         (line_of_sight + kLiningMarkRadius_m * (std::cos(angle) * right + std::sin(angle) * up)).normalized();
     const auto hit = scenery_.cast(eye_m, direction, kReach * line_of_sight.norm(), sim::kRayScenery);

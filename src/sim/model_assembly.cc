@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -90,7 +91,7 @@ std::optional<double> start_floor_m(const mjModel& model, const mjData& data, co
   std::optional<double> floor_m = center_m;
   for (const double radius_m : {1.0, 2.0}) {
     for (int i = 0; i < kDirections; ++i) {
-      const double angle = 2.0 * M_PI * i / kDirections;
+      const double angle = 2.0 * std::numbers::pi * i / kDirections;
       const std::optional<double> near_m =
           lowest_floor_m(model, data, p_world + radius_m * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
       if (near_m && (!center_m || *near_m < *center_m - radius_m))

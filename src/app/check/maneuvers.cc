@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -45,7 +46,7 @@ DriveSegment turn_segment(const CheckRobot& robot, double angle_rad) {
 DriveSegment circle_segment(const CheckRobot& robot, double radius_m) {
   const double speed_mps =
       kNominalRatio * std::min(robot.limits.max_speed_mps, robot.limits.max_yaw_rate_radps * radius_m);
-  return nominal_segment(robot, speed_mps, speed_mps / radius_m, 2.0 * M_PI * radius_m / speed_mps);
+  return nominal_segment(robot, speed_mps, speed_mps / radius_m, 2.0 * std::numbers::pi * radius_m / speed_mps);
 }
 
 double duration_of(const Maneuver& maneuver) {
@@ -86,7 +87,7 @@ Maneuver loop(const CheckRobot& robot) {
                   .measure = measure_loop};
   for (int side = 0; side < 4; ++side) {
     square.segments.push_back(straight_segment(robot, kSquare_m));
-    square.segments.push_back(turn_segment(robot, 0.5 * M_PI));
+    square.segments.push_back(turn_segment(robot, 0.5 * std::numbers::pi));
   }
   return square;
 }
@@ -96,7 +97,7 @@ Maneuver turn(const CheckRobot& robot) {
     return {.name = "turn",
             .title = "Turn in place by 360°",
             .world = plane_world(),
-            .segments = {turn_segment(robot, 2.0 * M_PI)},
+            .segments = {turn_segment(robot, 2.0 * std::numbers::pi)},
             .measure = measure_turn};
   return {.name = "turn",
           .title = fmt::format("Full circle of the minimum radius {:.2f} m", robot.limits.min_turning_radius_m),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -106,7 +107,7 @@ std::vector<Eigen::Vector2d> ellipse(const Eigen::Vector2d& center_m, const Eige
   const Eigen::Matrix2d half_axes = axes.vectors * axes.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= kNumPoints; ++i) {
-    const double angle = 2.0 * M_PI * i / kNumPoints;
+    const double angle = 2.0 * std::numbers::pi * i / kNumPoints;
     points.emplace_back(center_m + radius * half_axes * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
   return points;

@@ -57,7 +57,7 @@ Blocks replay_blocks(const RunContents& run, const std::filesystem::path& page_f
 std::vector<std::pair<std::string, std::string>> facts_of(const RunContents& run) {
   return {{"world", run.scenario.world},
           {"robot", run.scenario.robot},
-          {"mission", run.scenario.mission},
+          {"mission", run.scenario.mission.empty() ? "none" : run.scenario.mission},
           {"seed", fmt::format("{}", run.scenario.seed)},
           {"simulated", fmt::format("{:.1f} s", run.end_s())},
           {"patrol", run.version.empty() ? "unknown" : run.version}};

@@ -1,7 +1,6 @@
 #include "app/run/snapshot.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
@@ -15,8 +14,8 @@
 #include "app/scenario/settings_difference.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "io/files/atomic_file.h"
 #include "io/files/digest.h"
-#include "io/files/output_error.h"
 #include "io/files/zstd_bytes.h"
 
 namespace patrol::app {
@@ -24,14 +23,6 @@ namespace {
 
 constexpr std::string_view kMagic = "PATROL SNAPSHOT 2 ";  ///< followed by the checksum of the rest, and a line end
 constexpr const char* kExtension = ".snap";
-
-std::string read_bytes(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string() + ": cannot be read");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return std::move(text).str();
-}
 
 /// Name of the snapshot of an instant: its seconds, exact to the nanosecond.
 std::string name_of(Time time) {
@@ -51,7 +42,7 @@ std::optional<Time> time_of(const std::filesystem::path& file) {
 }
 
 RunState read_snapshot(const std::filesystem::path& file, const std::string& content) {
-  const std::string all_bytes = read_bytes(file);
+  const std::string all_bytes = io::load_text(file);
   std::string_view bytes = all_bytes;
   if (!bytes.starts_with(kMagic)) throw InputError(file.string() + ": is not a snapshot of this version");
   bytes.remove_prefix(kMagic.size());
@@ -107,16 +98,10 @@ SnapshotFolder::SnapshotFolder(std::filesystem::path folder, std::string content
 
 void SnapshotFolder::save(const RunState& state) const {
   std::filesystem::create_directories(folder_);
-  const std::filesystem::path file = folder_ / name_of(state.time);
-  const std::filesystem::path part = file.string() + ".part";
   const nlohmann::ordered_json header = {
       {"name", name_}, {"content", content_}, {"time_ns", state.time.count()}, {"size", state.bytes.size()}};
-  std::ofstream stream(part, std::ios::binary);
   const std::string rest = header.dump() + '\n' + io::zstd_compressed(state.bytes);
-  stream << kMagic << io::sha256(rest) << '\n' << rest;
-  stream.close();
-  if (!stream) throw io::OutputError(part.string() + ": cannot be written");
-  std::filesystem::rename(part, file);
+  io::save_text(folder_ / name_of(state.time), fmt::format("{}{}\n{}", kMagic, io::sha256(rest), rest));
 }
 
 std::vector<Time> snapshot_times(const std::filesystem::path& folder) {

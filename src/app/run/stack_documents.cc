@@ -1,24 +1,16 @@
 #include "app/run/stack_documents.h"
 
-#include <fstream>
-#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "core/error.h"
 #include "core/wheel_kinematics.h"
+#include "io/files/atomic_file.h"
 #include "io/logs/run_log.h"
 #include "io/yaml/settings_yaml.h"
 
 namespace patrol::app {
 namespace {
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string() + ": cannot be read");
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 link::VelocityLimits limits_of(const Scenario& scenario, const RobotDescription& robot) {
   const sim::LocomotionSettings& legs = scenario.locomotion;
@@ -143,8 +135,8 @@ StackDocuments stack_documents(const Scenario& scenario, const std::string& name
                 .limits = limits_of(scenario, files.robot),
                 .robot = files.robot_urdf_text,
                 .site = files.mission_text,
-                .goals = scenario.goals.empty() ? "" : text_of(world / scenario.goals),
-                .registration = files.map_registration ? text_of(registration_beside(world / scenario.map)) : "",
+                .goals = scenario.goals.empty() ? "" : io::load_text(world / scenario.goals),
+                .registration = files.map_registration ? io::load_text(registration_beside(world / scenario.map)) : "",
                 .documents = known_settings(scenario)},
       .environment = {{"PATROL_DATA", data_root.string()}},
       .static_transforms = io::encode(io::sensor_mounts(files.robot)),

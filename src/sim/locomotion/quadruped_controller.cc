@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Cholesky>
 #include <fmt/format.h>
@@ -283,7 +284,7 @@ FootVectors QuadrupedController::stance_forces(const TrunkState& trunk) {
 }
 
 void QuadrupedController::detect_fall(const TrunkState& trunk) {
-  constexpr double kFallenTilt_rad = M_PI / 3.0;
+  constexpr double kFallenTilt_rad = std::numbers::pi / 3.0;
   const bool is_tilted = std::cos(trunk.roll_rad) * std::cos(trunk.pitch_rad) < std::cos(kFallenTilt_rad);
   const bool is_collapsed = -ground_offset_m_ < gains_.collapsed_m;
   fallen_s_ = is_tilted || is_collapsed ? fallen_s_ + tick_s_ : 0.0;

@@ -15,9 +15,11 @@ namespace patrol::app::run_page_test {
 namespace {
 
 using test::small_run;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::Pair;
 
 template <typename Wanted>
 std::vector<Wanted> blocks_of(const std::vector<report::Block>& blocks) {
@@ -42,6 +44,12 @@ TEST(RunPage, BeginsWithTheVerdict) {
   const report::Page page = run_page(small_run(), "report.html");
   EXPECT_TRUE(std::holds_alternative<report::VerdictBlock>(page.sections.front().blocks.front()));
   EXPECT_THAT(titles_of(page), ElementsAre("", "Key metrics", "Map", "Error over time", "Settings"));
+}
+
+TEST(RunPage, ARunWithoutMissionSaysSo) {
+  RunContents run = small_run();
+  run.scenario.mission.clear();
+  EXPECT_THAT(run_page(run, "report.html").facts, Contains(Pair("mission", "none")));
 }
 
 TEST(RunPage, IsTheSameBytesTwice) {
