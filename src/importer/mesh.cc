@@ -10,8 +10,6 @@
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <assimp/Importer.hpp>
-#include <assimp/config.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -19,7 +17,7 @@
 
 #include "core/error.h"
 #include "importer/gltf_header.h"
-#include "importer/mesh_file_system.h"
+#include "importer/mesh_reader.h"
 #include "importer/mesh_text.h"
 
 namespace patrol::importer {
@@ -102,24 +100,14 @@ std::vector<MeshPart> load_mesh(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": mesh file not found");
   check_mesh_text(file);
   if (is_gltf(file)) read_gltf_header(file);
-  Assimp::Importer importer;
-  importer.SetIOHandler(new MeshFileSystem);  // the importer deletes it
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40.0F);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-                                                              aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
-  if (scene == nullptr || scene->mRootNode == nullptr)
-    throw InputError(fmt::format("{}: mesh cannot be read: {}", file.string(), mesh_error(importer.GetErrorString())));
+  MeshReader reader(file);
+  const aiScene& scene = reader.read(aiProcess_Triangulate | aiProcess_GenSmoothNormals | aiProcess_SortByPType |
+                                     aiProcess_JoinIdenticalVertices);
   PartsByColor by_color;
-  add_node(*scene, *scene->mRootNode, aiMatrix4x4(), by_color);
+  add_node(scene, *scene.mRootNode, aiMatrix4x4(), by_color);
   std::erase_if(by_color.parts, [](const MeshPart& part) { return part.mesh.empty(); });
   if (by_color.parts.empty()) throw InputError(file.string() + ": mesh has no triangles");
-  for (const MeshPart& part : by_color.parts) {
-    for (const Eigen::Vector3d& vertex : part.mesh.vertices_m) {
-      if (!vertex.allFinite()) throw InputError(file.string() + ": mesh has vertices that are not finite");
-    }
-  }
+  for (const MeshPart& part : by_color.parts) check_finite(part.mesh, file);
   return std::move(by_color.parts);
 }
 

@@ -8,8 +8,6 @@
 #include <utility>
 
 #include <Eigen/Geometry>
-#include <assimp/Importer.hpp>
-#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -19,8 +17,7 @@
 #include "core/letter_case.h"
 #include "core/text.h"
 #include "importer/gltf_header.h"
-#include "importer/mesh_file_system.h"
-#include "importer/mesh_text.h"
+#include "importer/mesh_reader.h"
 #include "importer/site/mesh_checks.h"
 #include "importer/site/mesh_materials.h"
 #include "io/files/atomic_file.h"
@@ -219,16 +216,8 @@ void add_rows(const aiScene& source, const PartCollector& collector, MeshScene& 
         {"triangles", fmt::format("{} without area are left out", collector.num_degenerate()), "the file"});
 }
 
-const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& importer) {
-  const auto check = [&](const aiScene* scene) -> const aiScene& {
-    if (scene != nullptr && scene->mRootNode != nullptr) return *scene;
-    throw InputError(fmt::format("{}: mesh cannot be read: {}", file.string(), mesh_error(importer.GetErrorString())));
-  };
-  importer.SetIOHandler(new MeshFileSystem);  // the importer deletes it
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_LINE | aiPrimitiveType_POINT);
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, 40.0F);
-  const aiScene& raw = check(importer.ReadFile(file.string(), 0));
+const aiScene& read_scene(const std::filesystem::path& file, MeshReader& reader) {
+  const aiScene& raw = reader.read(0);
   check_faces(file, raw);
   const std::size_t count = count_triangles(raw, *raw.mRootNode);
   if (count > kMaxTriangles)
@@ -238,7 +227,7 @@ const aiScene& read_scene(const std::filesystem::path& file, Assimp::Importer& i
   const bool has_colors = std::any_of(raw.mMeshes, raw.mMeshes + raw.mNumMeshes,
                                       [](const aiMesh* mesh) { return mesh->HasVertexColors(0); });
   if (!has_colors) steps |= aiProcess_JoinIdenticalVertices;
-  return check(importer.ApplyPostProcessing(steps));
+  return reader.process(steps);
 }
 
 }  // namespace
@@ -266,8 +255,8 @@ MeshScene read_mesh_scene(const std::filesystem::path& file, const std::string& 
   if (extension == ".dae") read_collada_asset(file, scene);
   check_mesh_file(file);
   if (extension == ".obj") check_material_libraries(file, scene);
-  Assimp::Importer importer;
-  const aiScene& source = read_scene(file, importer);
+  MeshReader reader(file);
+  const aiScene& source = read_scene(file, reader);
   MeshMaterials materials(source, file, prefix, scene);
   PartCollector collector(source, selection.submesh, materials, scene);
   collector.add_node(*source.mRootNode, Eigen::Affine3d::Identity());
@@ -275,11 +264,7 @@ MeshScene read_mesh_scene(const std::filesystem::path& file, const std::string& 
   if (scene.parts.empty() && !selection.submesh.empty())
     throw InputError(fmt::format("{}: submesh \"{}\" not found", file.string(), io::on_one_line(selection.submesh)));
   if (scene.parts.empty()) throw InputError(file.string() + ": mesh has no triangles");
-  for (const ScenePart& part : scene.parts) {
-    for (const Eigen::Vector3d& vertex : part.mesh.vertices_m) {
-      if (!vertex.allFinite()) throw InputError(file.string() + ": mesh has vertices that are not finite");
-    }
-  }
+  for (const ScenePart& part : scene.parts) check_finite(part.mesh, file);
   if (selection.is_centered) center(scene);
   add_rows(source, collector, scene);
   return scene;
