@@ -31,8 +31,8 @@ Eigen::Vector3d shank_rate(const LegGeometry& leg, const Eigen::Vector3d& joint_
 
 /// Angles of the hip and the knee of a leg in its plane.
 struct PlanarLegAngles {
-  double hip_rad = 0.0;   ///< of the thigh from the vertical, positive backward
-  double knee_rad = 0.0;  ///< of the shank relative to the thigh; negative: the knee points backward
+  double hip_rad = 0.0;   ///< angle of the thigh from the vertical, positive backward
+  double knee_rad = 0.0;  ///< angle of the shank relative to the thigh; negative: the knee points backward
 };
 
 /// Returns the angles with which a thigh and a shank reach a foot at `x_m` in front of and `z_m` above the hip, with

@@ -57,7 +57,7 @@ double within_steering_limits(const RobotDescription& robot, double forward_mps,
 /// Contact with the ground.
 struct Contact {
   double x_m = 0.0;   ///< longitudinal position relative to the middle of the wheels or tracks
-  double load = 1.0;  ///< relative to the mean
+  double load = 1.0;  ///< load relative to the mean
 };
 
 /// Returns the contacts of a robot without rollers. Loads are those of equal springs under the center of mass.

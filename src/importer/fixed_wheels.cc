@@ -20,7 +20,7 @@ constexpr double kTouch = 0.02, kTouch_m = 0.005;  // to the radius, and in addi
 struct FixedWheel {
   SourceJoint* joint = nullptr;
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  ///< along the cylinder
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();  ///< unit vector along the cylinder
   Eigen::Vector3d axis_in_link = Eigen::Vector3d::UnitY();
   double radius_m = 0.0;
 

@@ -16,7 +16,7 @@ Mesh convex_hull(const std::vector<Eigen::Vector3d>& points_m, int max_vertices)
 /// Limits of `convex_pieces`.
 struct PieceLimits {
   int max_pieces = 8;
-  int max_vertices = 64;     ///< of each piece
+  int max_vertices = 64;     ///< maximum number of vertices of each piece
   double min_size_m = 0.02;  ///< smaller components are dropped if there are larger ones
 };
 

@@ -62,7 +62,7 @@ std::vector<Mesh> components(const Mesh& welded_mesh);
 struct SolidProperties {
   double volume_m3 = 0.0;
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the center, m^5
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< inertia about the center, m^5
 };
 
 /// Integrates over the inside of a closed mesh by signed tetrahedra.

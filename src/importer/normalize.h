@@ -11,7 +11,7 @@ namespace patrol::importer {
 
 /// Choices of the user where a rule would decide.
 struct NormalizeOptions {
-  std::string name;                           ///< of the robot
+  std::string name;                           ///< name of the robot
   std::string base_link;                      ///< link of the file; empty: by rule
   std::string forward;                        ///< direction of travel in the base: x, -x, y or -y; empty: by the axles
   std::map<std::string, std::string> frames;  ///< sensor frame of Patrol to link of the file

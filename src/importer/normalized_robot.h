@@ -73,8 +73,8 @@ struct NormalizedRobot {
   std::vector<std::pair<std::string, std::string>> meshes = {};  ///< file name below meshes/ and OBJ text
   std::vector<std::string> sensor_frames = {};
   std::map<std::string, std::string> lidars = {};  ///< sensor frame to the settings of its lidar; none: defaults
-  double max_speed_mps = 0.0;                      ///< by the slowest driven wheel
-  double length_m = 0.0;                           ///< of the collision shapes, along x
+  double max_speed_mps = 0.0;                      ///< maximum speed by the slowest driven wheel
+  double length_m = 0.0;                           ///< length of the collision shapes along x
   double keep_out_margin_m = 0.0;                  ///< Ackermann drives; else 0
   double min_turning_radius_m = 0.0;
   double leg_m = 0.0;                      ///< length of the longest leg; robots with legs only

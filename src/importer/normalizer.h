@@ -87,7 +87,7 @@ struct Support {
   std::string name;
   Eigen::Vector3d center_m;
   double radius_m;
-  std::string link;  ///< of the file, from which mass is taken; empty: base
+  std::string link;  ///< link of the file from which mass is taken; empty: base
 };
 
 /// Turns one description into the result.
@@ -196,7 +196,7 @@ class Normalizer {
   std::string base_;                      ///< link of the file
   Pose3 T_root_base_;
   double source_kg_ = 0.0;   ///< mass of the file
-  Eigen::AlignedBox3d box_;  ///< of all shapes, in the root
+  Eigen::AlignedBox3d box_;  ///< bounding box of all shapes, in the root
   double ground_m_ = 0.0;    ///< height of the ground in the base
   std::set<std::string> used_links_, used_joints_;
   std::map<std::string, std::string> link_names_, joint_names_;  ///< source to result

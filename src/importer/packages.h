@@ -50,8 +50,8 @@ class Packages {
  private:
   std::optional<std::filesystem::path> with_name(const std::string& name) const;
 
-  std::map<std::string, std::filesystem::path> given_;  ///< by name
-  std::filesystem::path folder_;                        ///< of the file
+  std::map<std::string, std::filesystem::path> given_;  ///< given folders, by name of the package
+  std::filesystem::path folder_;                        ///< folder of the file
 };
 
 }  // namespace patrol::importer

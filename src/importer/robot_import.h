@@ -14,7 +14,7 @@ namespace patrol::importer {
 /// Options of `patrol import robot`.
 struct RobotImportOptions {
   std::filesystem::path file;  ///< .urdf or .xacro
-  std::string name = {};       ///< of the robot, its folder and files; empty: the name in the file
+  std::string name = {};       ///< name of the robot, its folder and files; empty: the name in the file
   std::map<std::string, std::filesystem::path> packages = {};  ///< folders of package:// and $(find ...)
   std::map<std::string, std::string> xacro_arguments = {};
   /// Python interpreter with the package xacro; the environment variable PATROL_PYTHON overrides it.

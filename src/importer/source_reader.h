@@ -106,10 +106,10 @@ class SourceReader {
   tinyxml2::XMLDocument document_;
   SourceRobot robot_;
   std::map<std::string, Eigen::Vector4d> materials_;
-  std::map<std::string, std::shared_ptr<const std::vector<MeshPart>>> meshes_;  ///< by path and scale
+  std::map<std::string, std::shared_ptr<const std::vector<MeshPart>>> meshes_;  ///< parts of meshes by path and scale
   std::map<std::string, std::string> unscaled_;  ///< key of `meshes_` without scale, to the extension
   std::vector<MissingVisual> missing_visuals_;
-  std::map<std::string, int> joint_lines_;                  ///< by name
+  std::map<std::string, int> joint_lines_;                  ///< lines of the joints, by name
   std::map<std::string, std::set<std::string>> elsewhere_;  ///< names of meshes that were searched for, by folder
 };
 

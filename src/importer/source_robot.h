@@ -100,9 +100,9 @@ struct SourceSensor {
 
 /// Vendor's robot description as written: a tree of links and joints.
 struct SourceRobot {
-  std::string file;  ///< for messages
+  std::string file;  ///< name of the file in messages
   std::string name;
-  std::map<int, std::string> positions = {};  ///< of an expanded xacro file: line to "FILE:LINE" in its xacro file
+  std::map<int, std::string> positions = {};  ///< lines of an expanded xacro file to "FILE:LINE" in its xacro file
   std::vector<SourceLink> links;
   std::vector<SourceJoint> joints;
   std::set<std::string> motors;  ///< joints named by a transmission, a command interface or a drive plugin

@@ -19,7 +19,7 @@ class RobotSurface {
   /// Point relative to the surface.
   struct Clearance {
     double distance_m = 0.0;  ///< from the nearest shape; negative inside
-    std::string link;         ///< of this shape
+    std::string link;         ///< link of the nearest shape
   };
   /// Returns the clearance of a point; none if all shapes are at least `max_m` away.
   std::optional<Clearance> clearance(const Eigen::Vector3d& p_base, double max_m) const;

@@ -59,8 +59,8 @@ class WheelFinder {
 
   const SourceRobot& robot_;
   std::map<std::string, Pose3> T_root_link_;
-  std::set<const SourceJoint*> endless_;                                   ///< without the joints of rollers
-  std::map<const SourceJoint*, std::vector<const SourceJoint*>> rollers_;  ///< by the joint of the wheel
+  std::set<const SourceJoint*> endless_;                                   ///< endless joints without those of rollers
+  std::map<const SourceJoint*, std::vector<const SourceJoint*>> rollers_;  ///< joints of rollers, by joint of the wheel
   FoundWheels found_;
   std::set<const SourceJoint*> reported_;  ///< joints of casters with a range
 };

@@ -17,7 +17,7 @@ enum class CarrierType { kNone, kSteering, kCaster };
 /// Wheel of a description, found by its shape and its contact with the ground. Positions and directions are in the root
 /// with all joints at zero.
 struct FoundWheel {
-  const SourceJoint* joint = nullptr;    ///< about the axle
+  const SourceJoint* joint = nullptr;    ///< joint about the axle
   const SourceJoint* carrier = nullptr;  ///< nearest vertical joint above, if `carrier_type` says so
   CarrierType carrier_type = CarrierType::kNone;
   Eigen::Vector3d center_m = Eigen::Vector3d::Zero();
@@ -36,7 +36,7 @@ struct FoundWheel {
 /// Link on an endless joint that is no wheel.
 struct RejectedWheel {
   const SourceJoint* joint = nullptr;
-  std::string reason;  ///< about the link
+  std::string reason;  ///< reason for the rejection
 };
 
 /// Wheels of a description and the height of the ground below them.

@@ -26,7 +26,7 @@ bool has_xacro_text(const std::string& text);
 
 /// Options of an expansion by xacro.
 struct XacroOptions {
-  std::map<std::string, std::string> arguments = {};           ///< by name
+  std::map<std::string, std::string> arguments = {};           ///< values of the arguments, by name
   std::map<std::string, std::filesystem::path> packages = {};  ///< folders of packages, by name
   std::string python = "python3";                              ///< interpreter that has the package xacro
 };

@@ -12,7 +12,7 @@ namespace patrol::link {
 namespace {
 
 constexpr std::size_t kReceiveBytes = std::size_t{64} << 10;
-constexpr std::size_t kMaxTextBytes = 400;  ///< of another program's text in a message
+constexpr std::size_t kMaxTextBytes = 400;  ///< maximum length of another program's text in a message
 
 }  // namespace
 

@@ -44,7 +44,7 @@ class SharedCore {
   std::optional<std::size_t> read_core() const;
 
   int file_;           ///< status of the other thread in /proc; -1: none
-  cpu_set_t cores_{};  ///< of the thread before it was bound
+  cpu_set_t cores_{};  ///< allowed cores of the thread before it was bound
 };
 
 }  // namespace patrol::link

@@ -23,7 +23,7 @@
 namespace patrol::link {
 namespace {
 
-constexpr std::chrono::milliseconds kSlice{100};  ///< between two checks for an interrupt
+constexpr std::chrono::milliseconds kSlice{100};  ///< maximum time between two checks for an interrupt
 
 /// Waits until the descriptor is ready. Throws LinkError if that takes longer than the wait. The time is judged before
 /// the last look at the descriptor: what is ready by then counts, however late this process looks.

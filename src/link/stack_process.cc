@@ -24,7 +24,7 @@ namespace patrol::link {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll{5};
-constexpr std::chrono::seconds kTimeToEnd{2};  ///< after a request to end
+constexpr std::chrono::seconds kTimeToEnd{2};  ///< time for the exit of the process after a request to end
 
 /// Environment of this process with further variables, "NAME=value".
 std::vector<std::string> environment_with(const std::map<std::string, std::string>& variables) {

@@ -47,7 +47,7 @@ struct HttpRequest {
   std::string local;                                           ///< address of the server's end of the connection
   std::string host;                                            ///< Host header; empty unless there is exactly one
   std::string method;                                          ///< GET, POST, ...
-  std::string path;                                            ///< as sent, without the query
+  std::string path;                                            ///< path as sent, without the query
   std::map<std::string, std::string, std::less<>> parameters;  ///< decoded query parameters
   std::string authorization;                                   ///< Authorization header
   std::string body;

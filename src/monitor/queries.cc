@@ -84,7 +84,7 @@ Json findings_page(Database& database, const AlarmsPage& page) {
   return objects_of(rows.bind(page.before, std::clamp(page.limit, 1, kMaxPageRows)));
 }
 
-/// At most 600 equally spaced positions of a run, and the last one.
+/// Equally spaced positions of a run, at most 600, and the last one.
 Json track_of(Database& database, std::int64_t run, std::int64_t num_poses) {
   Json track = Json::array();
   const std::int64_t step = num_poses / kMaxTrackPoints + 1;

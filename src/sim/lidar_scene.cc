@@ -123,7 +123,7 @@ constexpr const char* kEmbreeConfiguration = "threads=1,isa=avx2";
 /// Pose of a body in world.
 struct BodyPose {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Matrix3 rotation = Matrix3::Zero();  ///< not yet set
+  Matrix3 rotation = Matrix3::Zero();  ///< rotation of the body; zero: not yet set
 };
 
 }  // namespace

@@ -74,7 +74,7 @@ class LidarScene {
   struct Targets {
     struct Part {
       std::size_t index;
-      std::size_t begin, end;  ///< of its shapes in `shapes`
+      std::size_t begin, end;  ///< first and past-the-end index of its shapes in `shapes`
     };
     std::shared_ptr<const Poses> poses;
     RayCone cone;

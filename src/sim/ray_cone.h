@@ -11,7 +11,7 @@ struct RayCone {
   Eigen::Vector3d center;       ///< center of the ball
   double radius_m;              ///< radius of the ball
   Eigen::Vector3d axis;         ///< unit vector
-  double cosine = 1, sine = 0;  ///< of the half angle, which is at most 90 degrees
+  double cosine = 1, sine = 0;  ///< cosine and sine of the half angle, which is at most 90 degrees
 
   /// Returns whether the ray is one of the bundle.
   bool contains(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const {

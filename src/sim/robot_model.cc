@@ -44,7 +44,7 @@ void set_pose(const urdf::Pose& pose, double position[3], double quaternion[4]) 
 /// Properties of the whole robot that its links need.
 struct RobotParts {
   const RobotDescription& description;
-  std::filesystem::path folder;  ///< of the URDF file, where its meshes are
+  std::filesystem::path folder;  ///< folder of the URDF file and its meshes
   bool is_tracked;
   double road_wheel_load_n;  ///< load of each road wheel, if the robot has any
 };

@@ -68,7 +68,7 @@ class LowerEnvelope {
            (height - height_[last]) * (column_[last] - column_[last - 1]);
   }
 
-  std::vector<std::int64_t> column_, height_;  ///< of the vertices
+  std::vector<std::int64_t> column_, height_;  ///< columns and heights of the vertices
   std::size_t size_ = 0;                       ///< number of vertices
 };
 

@@ -53,7 +53,7 @@ inline constexpr double kNoObstacle = 1e20;
 /// Distance transform without a cap: squared distances, [row * width + column]. `is_obstacle`: not 0 for obstacles.
 std::vector<double> squared_distances(const std::vector<std::uint8_t>& is_obstacle, int width, int height);
 
-/// The same in single precision, with half of the memory.
+/// Squared distances as of `squared_distances` in single precision, with half of the memory.
 std::vector<float> squared_distances_float(const std::vector<std::uint8_t>& is_obstacle, int width, int height);
 
 }  // namespace patrol

@@ -15,7 +15,7 @@ bool is_of_network(std::string_view uri);
 struct FuelModel {
   std::string host;
   std::string owner;                ///< empty: the URI names none
-  std::string name;                 ///< without codes such as %20
+  std::string name;                 ///< name of the model without codes such as %20
   std::string version = {};         ///< number; empty: the newest
   std::filesystem::path file = {};  ///< in the folder of the model; empty: the model itself
 };

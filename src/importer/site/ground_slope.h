@@ -12,7 +12,7 @@ struct ImportedSite;
 /// Slopes of a ground over 1 m, or over two cells if these are longer.
 struct GroundSlopes {
   double max_rad = 0.0;
-  double steep_ratio = 0.0;  ///< of the cells with a slope above 2 degrees to those with a slope
+  double steep_ratio = 0.0;  ///< ratio of the cells with a slope above 2 degrees to those with a slope
 };
 
 /// Returns the slopes at the cells of a ground whose neighbors at half the distance belong to it. `is_ground`: cells of

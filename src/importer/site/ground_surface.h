@@ -13,10 +13,10 @@ namespace patrol::importer {
 
 /// Ground of a site as heights at the centers of cells.
 struct GroundSurface {
-  Grid<float> height_m;  ///< of every cell: that of the ground, of a drop beside it, or of the nearest ground
+  Grid<float> height_m;  ///< height of every cell: that of the ground, of a drop beside it, or of the nearest ground
   std::vector<char> is_ground = {};  ///< [cell]; 0: the height is that of a drop or of the nearest ground
-  double area_m2 = 0.0;              ///< of the ground, without filled cells; 0: a given floor below the whole grid
-  double own_area_m2 = 0.0;          ///< of the ground that belongs to the mesh and not to the given surfaces
+  double area_m2 = 0.0;              ///< area of the ground without filled cells; 0: a given floor below the whole grid
+  double own_area_m2 = 0.0;          ///< area of the ground that belongs to the mesh and not to the given surfaces
   bool is_found = false;    ///< false: no walkable surface of at least 1 m2; the heights are the lowest of the mesh
   bool is_oriented = true;  ///< false: the triangles of the mesh face both sides, and do not tell top and underside
   bool faces_up = true;     ///< most of the ground's triangles are counterclockwise seen from above; if not oriented:

@@ -54,10 +54,10 @@ struct SiteShape {
   /// between the centers of its ends, 0. Ellipsoid: its radii. Sphere: radius, 0, 0. Plane: half sizes of the drawn
   /// part, 0 for infinite; it is infinite for contact and lidar.
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
-  std::string material;                                   ///< name of a material of the site
-  Mesh mesh = {};                                         ///< for kMesh. With contact, MuJoCo uses its convex hull
+  std::string material;  ///< name of a material of the site
+  Mesh mesh = {};        ///< mesh of a shape kMesh; with contact, MuJoCo uses its convex hull
   std::vector<Eigen::Vector2d> texture_coordinates = {};  ///< [vertex of the mesh]; empty: none
-  HeightField height_field = {};                          ///< for kHeightField
+  HeightField height_field = {};                          ///< height field of a shape kHeightField
 };
 
 /// Material of a site. The luminance of its color is the reflectivity for lidars (sim/sensors/surface_optics.h); a
@@ -77,7 +77,7 @@ struct SiteFile {
 
 /// Site in Patrol's form, not yet written. All poses are in the frame `site`, z up.
 struct ImportedSite {
-  std::string name;       ///< of the site, its folder and its files
+  std::string name;       ///< name of the site, its folder and its files
   std::string source;     ///< file that it was read from
   std::string mjcf = {};  ///< model of the site, which replaces materials and shapes; empty: made of these
   std::vector<SiteMaterial> materials = {};
@@ -90,7 +90,7 @@ struct ImportedSite {
   std::string scenario_keys = {};             ///< further lines of the scenario
   std::string stack_keys = {};                ///< further lines of its section `stack`
   std::string robot = "wheeled";              ///< robot of the scenario
-  std::optional<double> lidar_height_m = {};  ///< of the lidar of the robot above the ground; none: without a lidar
+  std::optional<double> lidar_height_m = {};  ///< height of the robot's lidar above the ground; none: without a lidar
   std::vector<Assumption> assumptions = {};
 };
 

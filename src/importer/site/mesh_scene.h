@@ -24,7 +24,7 @@ struct ScenePart {
 struct MeshScene {
   std::vector<SiteMaterial> materials = {};
   std::vector<ScenePart> parts = {};
-  std::vector<SiteFile> textures = {};  ///< below textures/
+  std::vector<SiteFile> textures = {};  ///< texture files below textures/
   double unit_m = 0.0;                  ///< meters per unit of the vertices by the format; 0: the format has none
   double applied_unit_m = 1.0;          ///< meters per unit of the file that the vertices have already
   char up = 0;                          ///< axis that points up by the format, 'x', 'y' or 'z'; 0: the format has none

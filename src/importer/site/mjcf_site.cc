@@ -170,7 +170,7 @@ class MjcfCopy {
   std::filesystem::path mesh_folder_, texture_folder_;
   bool strips_path_ = false;
   std::set<std::filesystem::path> included_;
-  std::map<std::string, std::string> copies_;  ///< by folder and source
+  std::map<std::string, std::string> copies_;  ///< paths of copied files, by folder and source
   std::set<std::string> paths_;
 };
 

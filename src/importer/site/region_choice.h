@@ -16,7 +16,7 @@ inline constexpr double kMinEnclosed_m2 = 1.0;
 struct RegionArea {
   std::size_t num_cells = 0;
   std::size_t num_inner = 0;    ///< cells that are not in the margin along the border of the plan
-  bool reaches_border = false;  ///< of the plan
+  bool reaches_border = false;  ///< whether the region reaches the border of the plan
 
   /// Adds a cell of the region. `margin_m`: width of the margin; 0: none.
   void add(const GridGeometry& plan, Cell cell, double margin_m);
@@ -25,7 +25,7 @@ struct RegionArea {
 /// Region of a mission without a start.
 struct RegionChoice {
   std::size_t index = 0;
-  bool is_enclosed = false;  ///< inside of walls, although a region with its margin is larger
+  bool is_enclosed = false;  ///< region inside of walls, although a region with its margin is larger
 };
 
 /// Returns the largest region; none if there are no regions. If it reaches the border of the plan, its ground has no

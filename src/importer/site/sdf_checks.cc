@@ -166,7 +166,7 @@ class ElementChecker {
 
   struct Found {
     int count = 0;
-    std::string location = {};  ///< of the first
+    std::string location = {};  ///< location of the first occurrence
   };
 
   static bool is_shape(const sdf::ElementPtr& element) {

@@ -42,7 +42,7 @@ class SdfShapes {
 
   const SdfWorld& world_;
   ImportedSite& site_;
-  std::map<std::string, MeshScene> scenes_;  ///< by path and submesh
+  std::map<std::string, MeshScene> scenes_;  ///< mesh scenes by path and submesh
   std::map<std::string, int> names_;         ///< uses of names
 };
 

@@ -190,7 +190,7 @@ class SdfSiteBuilder {
   ImportedSite& site_;
   SdfShapes shapes_;
   std::vector<Mesh> contact_meshes_;                 ///< in site
-  Eigen::Vector3d scale_ = Eigen::Vector3d::Ones();  ///< of the shapes of the model that is being added
+  Eigen::Vector3d scale_ = Eigen::Vector3d::Ones();  ///< scale of the shapes of the model that is being added
   int num_moved_ = 0;                                ///< models with a state
   int num_scaled_ = 0;                               ///< models with another scale than 1
 };

@@ -92,7 +92,7 @@ class SdfSource {
   void check(const tinyxml2::XMLElement& element) const;
 
   std::filesystem::path file_;
-  std::map<int, std::string> positions_;  ///< of the elements of an expanded text (xacro.h)
+  std::map<int, std::string> positions_;  ///< positions of the elements of an expanded text (xacro.h)
   tinyxml2::XMLDocument document_;
   std::string content_;
   std::vector<LeftOutElement> left_out_;

@@ -13,7 +13,7 @@ namespace patrol::importer {
 /// Poses and scale of a model by the <state> of a world.
 struct SdfModelState {
   Pose3 T_world_model;
-  Eigen::Vector3d scale = Eigen::Vector3d::Ones();   ///< of the shapes of its links
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();   ///< scale of the shapes of the model's links
   std::map<std::string, Pose3> links = {};           ///< T_world_link by the name of the link
   std::map<std::string, SdfModelState> models = {};  ///< nested models
 };

@@ -35,7 +35,7 @@ constexpr std::array kExtensions = std::to_array<ExtensionFormat>({
 struct FormatOption {
   std::string_view option;
   std::vector<SiteFormat> formats;
-  std::string_view names;  ///< of the formats
+  std::string_view names;  ///< names of the formats
 };
 
 const std::vector<FormatOption>& format_options() {

@@ -23,9 +23,9 @@ struct MissionOptions {
   std::optional<Pose2> start = {};            ///< in site; none: by rule
   bool start_is_recorded = false;             ///< the start is that of a recorded path, which needs no clearance
   double clearance_m = 0.5;                   ///< distance of start and stations from walls and unknown space
-  double half_width_m = 0.3;                  ///< of the robot, which does not fit through narrower passages
+  double half_width_m = 0.3;                  ///< half width of the robot, which does not fit through narrower passages
   std::string robot = "wheeled";              ///< robot of the scenario
-  std::optional<double> lidar_height_m = {};  ///< of the lidar of the robot above the ground; none: without a lidar
+  std::optional<double> lidar_height_m = {};  ///< height of the robot's lidar above the ground; none: without a lidar
 };
 
 /// Receives the kind of work that begins, such as "compare scans", and the completed fraction of all work, 0 ... 1.
@@ -34,7 +34,7 @@ using ImportProgress = std::function<void(const std::string& work, double fracti
 /// Options of `patrol import site`. Each kind of file uses those that its reader names.
 struct SiteImportOptions {
   std::filesystem::path file;
-  std::string name;              ///< of the site, its folder and its files
+  std::string name;              ///< name of the site, its folder and its files
   double wall_height_m = 2.5;    ///< floor plans and logs: height of the walls
   double scale = 0.0;            ///< meshes and points: meters per unit of the file; 0: by rule
   std::string up = {};           ///< meshes and points: axis of the file that points up, y or z; empty: by rule

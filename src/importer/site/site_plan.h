@@ -19,14 +19,14 @@ struct SitePlanSettings {
   double min_obstacle_m = 0.05;  ///< minimum height of an obstacle above the ground
   double margin_m = 2.0;         ///< width of the plan beyond the surfaces that have an end, start and stations
   double max_outside_m = 50.0;   ///< start and stations farther outside of the surfaces do not extend the plan
-  double clearance_m = 0.5;      ///< of the robot; ground inside of walls needs kMinEnclosed_m2 with it
+  double clearance_m = 0.5;      ///< clearance of the robot; ground inside of walls needs kMinEnclosed_m2 with it
 };
 
 /// Floor plan of a site.
 struct SitePlan {
   OccupancyGrid map;
-  bool is_enclosed = false;    ///< of ground inside of walls: the ground outside is larger with its margin only
-  bool is_too_narrow = false;  ///< of ground outside of walls: that inside of them is too narrow for the robot
+  bool is_enclosed = false;    ///< map of ground inside of walls: the ground outside is larger with its margin only
+  bool is_too_narrow = false;  ///< map of ground outside of walls: that inside of them is too narrow for the robot
 };
 
 /// Returns the floor plan of a site by what its lidars see: cells of the connected ground are free, cells with a

@@ -14,7 +14,7 @@ struct WallSegment {
   Eigen::Vector2d begin_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d end_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();  ///< unit normal of the face, toward the free side
-  double thickness_m = 0.0;                           ///< of the wall behind the face
+  double thickness_m = 0.0;                           ///< thickness of the wall behind the face
 };
 
 /// Settings of `WallFitter`.
@@ -52,14 +52,14 @@ class WallFitter {
   /// Weighted sums of hits.
   struct Moments {
     double weight = 0.0;
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();       ///< of positions, relative to the origin of the plan
-    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();  ///< of positions
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();       ///< sum of positions, relative to the origin of the plan
+    Eigen::Matrix2d products = Eigen::Matrix2d::Zero();  ///< sum of outer products of the same positions
 
     void add(const Moments& other);
   };
   /// Surface of a cell.
   struct Surfel {
-    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  ///< relative to the origin of the plan
+    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  ///< position relative to the origin of the plan
     Eigen::Vector2d along = Eigen::Vector2d::UnitX();
     Eigen::Vector2d normal = Eigen::Vector2d::UnitY();
     double weight = 0.0;

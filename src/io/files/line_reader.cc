@@ -18,7 +18,7 @@ constexpr std::size_t kReadBytes = std::size_t{1} << 15;
 /// Maximum length of a skipped line; longer runs, such as zeros of a damaged disk, end the reading.
 constexpr std::size_t kMaxDroppedBytes = std::size_t{1} << 26;
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  ///< of UTF-8; some editors write it
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  ///< byte order mark of UTF-8; some editors write it
 
 }  // namespace
 

@@ -21,7 +21,7 @@ class LineReader {
 
   struct Line {
     int number = 0;         ///< starts at 1
-    std::string_view text;  ///< without the line end; valid until the next call
+    std::string_view text;  ///< text without the line end; valid until the next call
     bool is_cut = false;    ///< true: the line was longer than kMaxLineBytes
   };
 

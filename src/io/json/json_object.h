@@ -29,7 +29,7 @@ class JsonObject {
   const Json& list(const char* key) const;
   int integer(const char* key) const;
   double number(const char* key) const;       ///< finite
-  std::string string(const char* key) const;  ///< without control characters (C0, DEL, C1)
+  std::string string(const char* key) const;  ///< text without control characters (C0, DEL, C1)
   /// Value of the table's row of that name.
   template <NamedTable Table>
   auto choice(const char* key, const Table& table) const {

@@ -53,7 +53,7 @@ class GyroOdometry {
   void compare(double odometry_rad, double gyro_rad, double dt_s);
 
   std::optional<double> earlier_bias_radps_;
-  std::deque<Heading> headings_;  ///< by increasing stamp, without gaps
+  std::deque<Heading> headings_;  ///< headings by increasing stamp, without gaps
   double last_rate_radps_ = 0.0;
   std::optional<Time> last_stamp_;  ///< stamp of the previous scan
   std::optional<double> last_heading_rad_;

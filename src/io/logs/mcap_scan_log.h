@@ -78,13 +78,13 @@ class McapScanLog : public ScanLog {
   ScanLogOptions options_;
   McapReader reader_;
   std::vector<std::string> scan_topics_;
-  std::set<std::string> cloud_topics_;     ///< of clouds that are not selected
-  std::set<std::string> other_encodings_;  ///< of messages that are not CDR
+  std::set<std::string> cloud_topics_;     ///< topics of clouds that are not selected
+  std::set<std::string> other_encodings_;  ///< encodings of messages that are not CDR
   std::string odometry_topic_, imu_topic_, body_frame_;
   TransformBuffer odometry_;  ///< odometry topic only
   TransformBuffer frames_;    ///< transforms of /tf and /tf_static
   GyroOdometry gyro_;
-  std::set<std::string> tf_namespaces_;              ///< of the odom frames in tf: "robot1/", "" without
+  std::set<std::string> tf_namespaces_;  ///< namespaces of the odom frames in tf: "robot1/"; "": no namespace
   std::map<std::string, std::string> not_odometry_;  ///< frame of ignored odometry, by topic
   bool uses_tf_ = false;
   std::deque<WaitingScan> waiting_;

@@ -38,7 +38,7 @@ class NoReturnDetector {
 
   std::optional<Pose2> T_odom_examined_;
   std::uint64_t num_positions_ = 0, num_readings_ = 0;
-  std::map<float, Count> counts_;  ///< by range, m; ranges within 25 % of the maximum only
+  std::map<float, Count> counts_;  ///< counts by range, m; ranges within 25 % of the maximum only
 };
 
 }  // namespace patrol::io

@@ -11,7 +11,7 @@
 namespace patrol::io {
 namespace {
 
-/// How long odometry is kept for the estimates that come later than it.
+/// Time for which odometry is kept for estimates that arrive later.
 constexpr Time kOdometryMemory = std::chrono::seconds(2);
 
 }  // namespace

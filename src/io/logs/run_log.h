@@ -70,9 +70,9 @@ class RunLogWriter {
   McapWriter writer_;
   RosNames names_;
   std::map<std::tuple<std::string, std::string, std::string>, McapWriter::ChannelId>
-      channels_;                                               ///< by topic, type and definition
-  std::map<std::string, McapWriter::ChannelId> own_channels_;  ///< of Patrol's messages, by topic
-  Trajectory odometry_;  ///< of late, to place map over odom at an estimate's stamp
+      channels_;                                               ///< channels by topic, type and definition
+  std::map<std::string, McapWriter::ChannelId> own_channels_;  ///< channels of Patrol's messages, by topic
+  Trajectory odometry_;  ///< recent odometry, to place map over odom at an estimate's stamp
 };
 
 /// Handlers of the messages of a log; messages without a handler are skipped undecoded.

@@ -55,7 +55,7 @@ struct ScanLogSummary {
   std::uint64_t num_reordered = 0;               ///< number of these that were preceded by a later scan in the file
   std::uint64_t num_same_stamp = 0;              ///< number of these with the same stamp as the previous scan
   std::uint64_t num_beams = 0, num_returns = 0;  ///< number of their beams, and of beams with a range
-  Time first_stamp{}, last_stamp{};              ///< of the scans
+  Time first_stamp{}, last_stamp{};              ///< stamps of the first and the last scan
   std::map<std::string, std::uint64_t> ignored;  ///< number by message name: not selected, or of unknown type
   std::vector<std::string> found;                ///< properties detected in the log and applied
   /// Number of scans by assumption: the file has no or conflicting information.

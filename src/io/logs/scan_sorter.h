@@ -43,7 +43,7 @@ class ScanSorter {
   std::optional<Time> last_taken() const { return last_taken_; }
 
  private:
-  std::deque<RecordedScan> pending_;  ///< by increasing stamp
+  std::deque<RecordedScan> pending_;  ///< scans not yet taken, by increasing stamp
   std::optional<Time> last_taken_;
 };
 

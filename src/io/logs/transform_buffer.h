@@ -39,7 +39,7 @@ class TransformBuffer {
   struct Link {
     std::string parent;
     bool is_static = false;
-    std::deque<StampedPose> T_parent_child;  ///< by increasing stamp; one entry if static
+    std::deque<StampedPose> T_parent_child;  ///< poses by increasing stamp; one entry if static
   };
   struct Ancestor {
     std::string frame;
@@ -49,7 +49,7 @@ class TransformBuffer {
   std::vector<Ancestor> ancestors(const std::string& frame, Time stamp) const;
   Link* find_or_add_link(const FrameTransform& transform);
 
-  std::map<std::string, Link> links_;  ///< by child frame
+  std::map<std::string, Link> links_;  ///< links by child frame
 };
 
 }  // namespace patrol::io

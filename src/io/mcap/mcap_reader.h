@@ -35,8 +35,8 @@ struct McapMessage {
 /// Order in which messages are read.
 enum class McapOrder {
   kFile,
-  /// By log time; equal times in the order of the file. Needs a summary with the channels, and all messages in chunks:
-  /// other files are read sequentially, without their summary. Memory: the chunks that overlap in time.
+  /// Order by log time; equal times in the order of the file. Needs a summary with the channels, and all messages in
+  /// chunks: other files are read sequentially, without their summary. Memory: the chunks that overlap in time.
   kLogTime,
 };
 
@@ -85,7 +85,8 @@ class McapReader {
     std::vector<std::pair<Time, std::string_view>> messages;  ///< content of the records, by log time
     std::size_t next = 0;                                     ///< index of the next message
   };
-  using OpenChunks = std::map<std::pair<Time, std::uint64_t>, OpenChunk>;  ///< by time of the next message and offset
+  /// Chunks by time of the next message and offset.
+  using OpenChunks = std::map<std::pair<Time, std::uint64_t>, OpenChunk>;
 
   void open_by_time();
   std::optional<std::vector<ChunkEntry>> find_chunks();
@@ -117,10 +118,10 @@ class McapReader {
   struct Schema {
     std::string type, definition, encoding;
   };
-  std::map<std::uint16_t, Schema> schemas_ = {{std::uint16_t{0}, {}}};  ///< by id; 0: none
+  std::map<std::uint16_t, Schema> schemas_ = {{std::uint16_t{0}, {}}};  ///< schemas by id; 0: none
   std::map<std::uint16_t, McapChannel> channels_;
   std::set<std::string> summary_channels_;   ///< topics of the channels in the summary
-  std::set<std::uint64_t> unwanted_chunks_;  ///< by offset in the file
+  std::set<std::uint64_t> unwanted_chunks_;  ///< offsets of the chunks in the file
   std::string record_, chunk_;
   std::string_view rest_of_chunk_;  ///< unread part of chunk_
 

@@ -79,7 +79,7 @@ class McapWriter {
   std::uint64_t total_count_ = 0;
   std::uint64_t first_time_ = 0, last_time_ = 0;
 
-  Chunk chunk_;  ///< not yet complete
+  Chunk chunk_;  ///< chunk that is not yet complete
   std::vector<ChunkIndex> chunks_;
   BackgroundWorker worker_{true};  ///< writes complete chunks; until it is done, the file is its own
   BackgroundWorker::Ticket written_ = 0;

@@ -15,7 +15,7 @@ enum class E57Type : std::uint8_t { kFloat32, kFloat64, kInteger, kText };
 struct E57Column {
   std::string name;  ///< "cartesianX"
   E57Type type = E57Type::kFloat64;
-  std::size_t bits = 64;     ///< of a record; integers: as many as their limits need, 0 for a constant
+  std::size_t bits = 64;     ///< number of bits of a record; integers: as many as their limits need, 0 for a constant
   std::int64_t minimum = 0;  ///< integers: value of the bits 0
   double scale = 1.0;        ///< integers: value of a step
   double offset = 0.0;       ///< integers: value of the integer 0

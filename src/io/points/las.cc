@@ -23,7 +23,7 @@ constexpr std::uint8_t kCompressedFormat = 0x80;  // bit that LASzip sets
 constexpr std::array<std::size_t, 11> kPointBytes = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
 struct LasHeader {
-  std::size_t begin = 0;  ///< of the points
+  std::size_t begin = 0;  ///< offset of the points in the file
   int format = 0;
   std::size_t point_bytes = 0, num_points = 0;
   Eigen::Array3d scale, offset;

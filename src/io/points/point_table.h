@@ -54,7 +54,7 @@ class PointTable {
   std::size_t num_points_;
   std::size_t row_bytes_ = 0, row_numbers_ = 0;
   struct Source {
-    std::size_t byte, number;  ///< within a row
+    std::size_t byte, number;  ///< offsets of the byte and of the number within a row
     NumberType type;
   };
   std::optional<Source> sources_[4];  ///< columns of x, y, z, intensity

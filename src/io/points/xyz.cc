@@ -110,8 +110,8 @@ std::array<double, 4> read_point(const FileText& text, std::string_view line, co
 struct XyzStart {
   XyzColumns columns;
   bool is_named = false;                       ///< a line names the columns
-  std::optional<std::size_t> num_points = {};  ///< by the first line of PTS
-  std::optional<std::string_view> first_line;  ///< of the first point; none if there are no points
+  std::optional<std::size_t> num_points = {};  ///< number of points by the first line of PTS
+  std::optional<std::string_view> first_line;  ///< line of the first point; none if there are no points
 };
 
 std::size_t read_count(const FileText& text, const std::string& words) {

@@ -40,7 +40,7 @@ struct Writer {
 struct Reader {
   Cdr& cdr;
   RosNames names{};
-  bool has_unit_quaternions = true;  ///< of the poses read before
+  bool has_unit_quaternions = true;  ///< whether all poses read before have unit quaternions
   static constexpr bool kWrites = false;
   template <typename T>
   void operator()(T& value) {

@@ -32,7 +32,7 @@ struct TransformSet {
 /// beam), vp_x, vp_y, vp_z (position of the lidar, named as in PCL's PointWithViewpoint), scan (index, uint16) and hit
 /// (uint8; 0: the beam was free up to its end).
 struct KeyframeScans {
-  Time stamp{};                  ///< of the newest scan
+  Time stamp{};                  ///< stamp of the newest scan
   std::vector<LevelScan> scans;  ///< oldest first
 };
 

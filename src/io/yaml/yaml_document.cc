@@ -76,7 +76,7 @@ class LimitChecker final : public YAML::EventHandler {
   const std::string& source_;
   bool has_lines_;
   int num_documents_ = 0;
-  std::size_t num_nodes_ = 0;  ///< with aliases expanded
+  std::size_t num_nodes_ = 0;  ///< number of nodes with aliases expanded
   std::map<YAML::anchor_t, std::size_t> nodes_by_anchor_;
   std::vector<Open> open_;
 };

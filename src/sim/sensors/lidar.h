@@ -49,7 +49,7 @@ class Lidar {
   /// Revolution whose beams have been fired, and may still be measured by the worker.
   struct FiredRevolution {
     BackgroundWorker::Ticket ticket = 0;
-    std::shared_ptr<Revolution> revolution;  ///< with the stamp of its message
+    std::shared_ptr<Revolution> revolution;  ///< revolution with the stamp of its message
   };
 
   /// Removes and returns the revolutions completed since the last call.
@@ -76,7 +76,7 @@ class Lidar {
   };
 
   struct Beam {
-    std::int64_t number;  ///< since the start
+    std::int64_t number;  ///< number of the beam since the start
     Time instant;
     Pose3 T_world_lidar;
   };
@@ -122,7 +122,7 @@ class Lidar {
   std::vector<double> instants_;                            ///< [beam], fraction of the revolution
   std::vector<Eigen::Vector2d> elevation_;                  ///< [ring], cosine and sine of the elevation
   std::shared_ptr<Revolution> revolution_ = std::make_shared<Revolution>();
-  std::vector<Shots> shots_;   ///< not yet submitted, [tick]
+  std::vector<Shots> shots_;   ///< beams that are not yet submitted, [tick]
   std::size_t max_beams_ = 0;  ///< maximum number of beams in a tick, for memory only
   BackgroundWorker* worker_;
   BackgroundWorker::Ticket submitted_ = 0;

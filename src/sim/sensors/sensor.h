@@ -32,7 +32,7 @@ struct SensorContext {
   const GasPlume& plume;
   const Subsurface& subsurface;
   const DepthImagerFactory& make_depth_imager;
-  BackgroundWorker& worker;  ///< for expensive readings
+  BackgroundWorker& worker;  ///< worker for expensive readings
   std::uint64_t seed;
 };
 

@@ -4,6 +4,6 @@
 
 namespace patrol::sim {
 
-inline constexpr double kPermeability = 4e-7 * std::numbers::pi;  ///< of the vacuum, V s / (A m)
+inline constexpr double kPermeability = 4e-7 * std::numbers::pi;  ///< permeability of the vacuum, V s / (A m)
 
 }  // namespace patrol::sim

@@ -19,9 +19,9 @@ struct Prism {
 struct PlanBeam {
   Eigen::Vector2d origin_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
-  double range_m = 0.0;   ///< along `direction`; infinite without a return
+  double range_m = 0.0;   ///< range along `direction`; infinite without a return
   bool is_hit = false;    ///< whether it returned from the object or closer than 3 cm to it
-  double height_m = 0.0;  ///< of the beam at the object, above the middle of the prism
+  double height_m = 0.0;  ///< height of the beam at the object, above the middle of the prism
   std::size_t scan = 0;
   Pixel pixel = {};
 };

@@ -264,7 +264,7 @@ class CloudOctree {
   const std::vector<ScannerPoint>& points_;
   const std::function<float(float)>& reflectivity_;
   Eigen::Vector3d corner_ = Eigen::Vector3d::Zero();
-  std::vector<KeyedPoint> sorted_;  ///< by key
+  std::vector<KeyedPoint> sorted_;  ///< points in ascending key order
   std::unordered_set<CellKey> occupied_;
   int leaf_ = 0;
   double noise_m_ = 0.0;

@@ -10,7 +10,7 @@ namespace patrol::importer {
 /// Linear map from intensities to the light of a surface, reflectivity times cosine of incidence.
 struct IntensityScale {
   float factor = 0.0f;  ///< 0: the points have no intensity
-  std::string rule;     ///< for the table of assumptions
+  std::string rule;     ///< text for the table of assumptions
   float black = 0.0f;   ///< intensity of a black surface
 
   bool is_known() const { return factor > 0.0f; }

@@ -105,7 +105,7 @@ class Panorama {
   std::vector<float> range_m_, intensity_;
   std::vector<std::uint8_t> state_;
   std::vector<Eigen::Vector2d> col_direction_;  ///< cosine and sine of the azimuth, [column]
-  std::vector<float> row_cosine_, row_sine_;    ///< of the elevation, [row]
+  std::vector<float> row_cosine_, row_sine_;    ///< cosine and sine of the elevation, [row]
 };
 
 /// Returns whether the surface continues between two neighboring beams with ranges b and c, beside them a and d (0: no

@@ -15,7 +15,7 @@ struct PixelRectangle {
   int width = 0;     ///< columns; 0: joined to another
   int height = 0;    ///< rows
   PointMoments moments = {};
-  double light_sum = 0.0;  ///< of the intensities
+  double light_sum = 0.0;  ///< sum of the intensities
 };
 
 /// Returns the length of a step across a beam when it is projected onto a plane along the beam, up to an incidence of

@@ -10,7 +10,7 @@ namespace patrol::importer {
 
 /// Outline of a post seen from above, fitted to beams.
 struct FittedOutline {
-  ConvexPolygon outline_m = {};                     ///< at the middle of the prism
+  ConvexPolygon outline_m = {};                     ///< outline at the middle of the prism
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< horizontal displacement per meter of height
   double cost = 1.0;  ///< mean disagreement of the beams (`cost_of`), and 0.05 per slope of 1
 };
