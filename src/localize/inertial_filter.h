@@ -18,10 +18,10 @@ class InertialFilter {
  public:
   struct Settings {
     double gyro_noise_density_radps_per_sqrt_hz;
-    double gyro_bias_std_radps;  ///< at power-on
+    double gyro_bias_std_radps;  ///< standard deviation at power-on
     double gyro_bias_random_walk_radps_per_sqrt_s;
     double accel_noise_density_mps2_per_sqrt_hz;  ///< includes the aliasing of walking shocks
-    double accel_bias_std_mps2;                   ///< at power-on
+    double accel_bias_std_mps2;                   ///< standard deviation at power-on
     double accel_bias_random_walk_mps2_per_sqrt_s;
     double
         position_random_walk_m_per_sqrt_m;    ///< position random walk: errors that are not white noise of the velocity

@@ -38,8 +38,8 @@ Eigen::Matrix3d tilt_error_by_accel_bias(const Eigen::Quaterniond& R_odom_body);
 /// Dead-reckoning step with its linearization point.
 struct InertialStep {
   TrunkMotion after;                                          ///< its omega is the mean rate of the step
-  Eigen::Matrix3d R_odom_body = Eigen::Matrix3d::Identity();  ///< at the middle of the step
-  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();           ///< at the middle of the step, m/s
+  Eigen::Matrix3d R_odom_body = Eigen::Matrix3d::Identity();  ///< rotation at the middle of the step
+  Eigen::Vector3d v_body = Eigen::Vector3d::Zero();           ///< velocity at the middle of the step, m/s
 };
 
 /// Integrates one step. `omega_radps` and `force_mps2` are means over the step, in body, without bias.

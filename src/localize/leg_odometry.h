@@ -82,7 +82,7 @@ StanceFoot stance_foot(const LegGeometry& leg, int index, const LegSample& sampl
 struct LegVelocity {
   Eigen::Vector3d v_body = Eigen::Vector3d::Zero();     ///< velocity of the trunk origin, in body, m/s
   Eigen::Vector3d p_contact = Eigen::Vector3d::Zero();  ///< weighted mean of the contact points, in body, m
-  double variance = 0.0;                                ///< per axis, (m/s)2
+  double variance = 0.0;                                ///< variance per axis, (m/s)2
   int num_slipping = 0;                                 ///< number of down-weighted feet
 };
 

@@ -23,8 +23,9 @@ struct EstimatorHealth {
   bool legs_timed_out = false;      ///< the estimate is propagated by the IMU alone
   bool contacts_timed_out = false;  ///< stance feet are selected by their height
   double gyro_z_bias_std_radps = 0.0;
-  std::uint64_t num_rejected_messages = 0;  ///< not finite, of the wrong size, frozen, or outdated
-  std::uint64_t num_slips = 0;              ///< number of readings of a stance foot that slips
+  /// Number of messages that are not finite, of the wrong size, frozen, or outdated.
+  std::uint64_t num_rejected_messages = 0;
+  std::uint64_t num_slips = 0;  ///< number of readings of a stance foot that slips
 };
 
 /// Legged odometry: pose of the trunk in `odom` from IMU, joint encoders and foot forces, at the newest reading.
@@ -82,7 +83,7 @@ class LeggedOdometry {
   ContactDetector contact_;
   PendingReadings<LegSample> pending_;  ///< waiting for IMU and foot forces
   std::optional<Time> last_contacts_;
-  ContactWeights contact_weights_{};  ///< at `last_contacts_`
+  ContactWeights contact_weights_{};  ///< contact weights at `last_contacts_`
   std::optional<Time> last_leg_update_;
   double height_m_ = 0.0;
 

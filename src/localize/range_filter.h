@@ -18,7 +18,7 @@ enum class RangeStatus : std::uint8_t {
   kAccepted,
   kTooLong,   ///< probably NLOS
   kTooShort,  ///< outlier or wrong estimate, because no effect shortens a range
-  kUnusable,  ///< not finite, negative, unknown anchor, old stamp, frozen, or before the start
+  kUnusable,  ///< value not finite or negative, unknown anchor, old stamp, frozen, or before the start
 };
 
 struct RangeOutcome {

@@ -35,7 +35,7 @@ class RestDetector {
   };
 
   Settings settings_;
-  std::deque<Sample> samples_;  ///< those of the window, and one before it
+  std::deque<Sample> samples_;  ///< samples of the window, and one before it
 };
 
 }  // namespace patrol::localize

@@ -23,8 +23,8 @@ struct DriveTicks : TrackTicks {
     archive(stamp, left, right, lateral, residual);
   }
 
-  std::int64_t lateral = 0;   ///< of the motion to the left
-  std::int64_t residual = 0;  ///< of the motion that only slip explains (WheelMotion::residual_mps,
+  std::int64_t lateral = 0;   ///< counts of the motion to the left
+  std::int64_t residual = 0;  ///< counts of the motion that only slip explains (WheelMotion::residual_mps,
                               ///< SteeredWheels)
 };
 

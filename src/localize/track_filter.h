@@ -25,10 +25,10 @@ class TrackFilter {
  public:
   struct Settings {
     double gyro_noise_density_radps_per_sqrt_hz;
-    double gyro_bias_std_radps;  ///< at power-on
+    double gyro_bias_std_radps;  ///< standard deviation at power-on
     double gyro_bias_random_walk_radps_per_sqrt_s;
     double accel_noise_density_mps2_per_sqrt_hz;
-    double accel_bias_std_mps2;  ///< at power-on
+    double accel_bias_std_mps2;  ///< standard deviation at power-on
     double accel_bias_random_walk_mps2_per_sqrt_s;
     double yaw_random_walk_rad_per_sqrt_rad;  ///< gyro scale factor and misalignment, during rotation
     double scale_std;

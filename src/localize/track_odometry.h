@@ -25,7 +25,8 @@ struct TrackOdometryHealth {
   bool encoders_timed_out = false;  ///< the estimate is propagated by the IMU alone: no encoder reading was accepted
   bool is_slipping = false;         ///< track and body speeds disagree, or the encoders are frozen: IMU alone
   double gyro_z_bias_std_radps = 0.0;
-  std::uint64_t num_rejected_messages = 0;  ///< not finite, frozen, implausible, or outdated
+  /// Number of messages that are not finite, frozen, implausible, or outdated.
+  std::uint64_t num_rejected_messages = 0;
   std::uint64_t num_slip_events = 0;
 };
 
@@ -96,7 +97,7 @@ class TrackOdometry {
   double skid_ratio_;
   bool is_mecanum_;
   double meters_per_tick_;
-  StanceFeet track_ends_;  ///< at rest while the tracks are
+  StanceFeet track_ends_;  ///< ends of the tracks, which are at rest while the tracks are
   ImuFrontEnd<TrackFilter> imu_;
 
   Time started_{};

@@ -39,7 +39,7 @@ class WheelRows {
 
  private:
   struct Side {
-    std::vector<std::pair<std::size_t, double>> joints;  ///< of the wheels: index, and sign of forward rotation
+    std::vector<std::pair<std::size_t, double>> joints;  ///< joints of the wheels: index, and sign of forward rotation
     std::vector<double> angle_rad;                       ///< last reading, [wheel]; empty before it
     std::vector<double> step_rad;                        ///< last rotation, [wheel]
     std::vector<double> speed_mps;                       ///< smoothed speed of the rim, [wheel]

@@ -30,10 +30,10 @@ inline constexpr std::array<const char*, 10> kBeamClassNames = {
 /// Beam of a scan without errors: geometry of the site along it.
 struct ExpectedBeam {
   double range_m = std::numeric_limits<double>::infinity();  ///< expected range; infinite without surface
-  double cosine = 1.0;                                       ///< of the angle of incidence
+  double cosine = 1.0;                                       ///< cosine of the angle of incidence
   double reflectivity = 0.0;
   double slope_m_per_rad = 0.0;              ///< change of the range with the azimuth, by the site
-  Eigen::Vector3d normal = {0.0, 0.0, 0.0};  ///< of the surface, in site
+  Eigen::Vector3d normal = {0.0, 0.0, 0.0};  ///< normal of the surface, in site
   bool is_glass = false;
   bool is_smooth = false;  ///< whether the surface continues to both sides and to the neighboring beams
   bool is_jump = false;    ///< whether the range jumps by 0.1 to 1.5 m from the previous beam (sim/sensors/lidar.cc)

@@ -87,8 +87,8 @@ double edge_density(double deviation_m, double std_m, double step_m) {
 struct Aim {
   double offset_deg = 0.0;
   double probability = 0.0;
-  double range_m = 0.0;           ///< without mixing
-  double jump_probability = 0.0;  ///< of a jump from the previous beam that mixes
+  double range_m = 0.0;           ///< range without mixing
+  double jump_probability = 0.0;  ///< probability of a jump from the previous beam that mixes
 };
 
 /// Returns the aims of a sample with a return, by the angle noise of this and the previous beam.

@@ -13,7 +13,7 @@ struct HitSample {
   double residual_m = 0.0;       ///< recorded minus expected range
   double range_m = 0.0;          ///< expected
   double slope_m_per_rad = 0.0;  ///< change of the expected range with the azimuth
-  double cosine = 1.0;           ///< of the angle of incidence
+  double cosine = 1.0;           ///< cosine of the angle of incidence
   double darkness = 0.0;         ///< log(0.5 / reflectivity) / log(5): 0 on 50 %, 1 on 10 %
   std::size_t block = 0;         ///< group of scans, within which errors may be correlated
 };

@@ -34,8 +34,8 @@ struct LidarFitSettings {
 /// Scans on the site, with their beams.
 struct ScanSet {
   std::vector<PosedScan> scans;
-  std::vector<Beam> beams;     ///< of all scans, in order
-  BeamRules rules;             ///< of the classes of the beams
+  std::vector<Beam> beams;     ///< beams of all scans, in order
+  BeamRules rules;             ///< rules of the classes of the beams
   double absorbed_bias = 0.0;  ///< mean fraction of a constant range error that the alignment of the scans removes
   /// Factors on the intervals of offset, scale, incidence and reflectivity for the poses that were fitted with them.
   std::array<double, 4> interval_factors = {1.0, 1.0, 1.0, 1.0};

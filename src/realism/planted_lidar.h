@@ -22,7 +22,7 @@ struct PlantedTrialSettings {
 
 struct PlantedTrial {
   LidarDevice planted;                                 ///< the lidar of the log
-  std::vector<std::pair<std::string, double>> values;  ///< of the planted parameters, by their names in the fit
+  std::vector<std::pair<std::string, double>> values;  ///< values of the planted parameters, by their names in the fit
   LidarFit fit;
 };
 

@@ -28,9 +28,9 @@ double ks_distance(std::vector<double> first, std::vector<double> second);
 struct ResidualBin {
   double low = 0.0, high = 0.0;   ///< limits of the bin
   std::size_t num_expected = 0;   ///< beams on a smooth surface, with and without return
-  std::size_t num_dropouts = 0;   ///< of these, without return
-  std::size_t num_moving = 0;     ///< of these, moving or unmapped
-  ResidualDistribution residual;  ///< of the static ones
+  std::size_t num_dropouts = 0;   ///< expected beams without return
+  std::size_t num_moving = 0;     ///< expected beams that are moving or unmapped
+  ResidualDistribution residual;  ///< residuals of the static beams
 
   double dropout_rate() const {
     return num_expected == 0 ? 0.0 : static_cast<double>(num_dropouts) / static_cast<double>(num_expected);

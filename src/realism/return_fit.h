@@ -19,7 +19,7 @@ struct LimitFit {
   double value = 0.0;
   double low = 0.0, high = 0.0;      ///< 95 % interval
   bool has_upper = false;            ///< whether the log has an upper end; otherwise `high` is the end of the search
-  double log_likelihood_gain = 0.0;  ///< over no limit
+  double log_likelihood_gain = 0.0;  ///< gain over no limit
   std::size_t num_beyond = 0;        ///< beams beyond the limit
 };
 

@@ -18,7 +18,7 @@ namespace patrol::realism {
 struct SurfaceHit {
   double range_m = 0.0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit normal, in site, oriented toward the lidar
-  double reflectivity = 0.0;                         ///< as the lidar model uses it: at least 0.02
+  double reflectivity = 0.0;                         ///< reflectivity as the lidar model uses it: at least 0.02
   bool is_glass = false;
 };
 

@@ -31,9 +31,9 @@ struct RunSnapshot {
   Pose3 T_world_body;  ///< ground truth
   Pose2 T_world_map;
   std::optional<Pose2> T_map_body;              ///< newest estimate; none before the first
-  std::vector<Eigen::Vector3d> true_path;       ///< on the ground
-  std::vector<Eigen::Vector3d> estimated_path;  ///< on the ground
-  std::vector<Eigen::Vector3d> planned_path;    ///< on the ground
+  std::vector<Eigen::Vector3d> true_path;       ///< ground truth path on the ground
+  std::vector<Eigen::Vector3d> estimated_path;  ///< estimated path on the ground
+  std::vector<Eigen::Vector3d> planned_path;    ///< planned path on the ground
   std::vector<Eigen::Vector3d> scan;            ///< scan hits at the estimated pose
   std::vector<Pose2> particles;                 ///< in map
   std::shared_ptr<const OccupancyGrid> map;     ///< in map; null before the first map

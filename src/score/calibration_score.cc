@@ -17,7 +17,7 @@ constexpr double kTurnStep_s = 0.2;  // interval of the motion that shows the ce
 constexpr double kTurnCorrelation_rad = 2.0;
 constexpr double kMinTurn_rad2 = 0.05;  // minimum weighted sum of squared rotations that gives a center
 constexpr double kQuantile95 = 1.959964;
-constexpr double kMinDeterminant = 1e-6;  ///< of the normal equations scaled to a diagonal of 1
+constexpr double kMinDeterminant = 1e-6;  ///< minimum determinant of the normal equations scaled to a diagonal of 1
 
 /// Motion over a segment by odometry and by ground truth; `from` and `to` are indices of odometry.
 struct Segment {

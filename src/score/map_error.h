@@ -36,7 +36,7 @@ struct MapError {
 /// Compares a built map (in map) with the reference. Throws InputError when the built map has no occupied cell, or the
 /// reference has no observable occupied cell.
 MapError map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference);
-/// The same with the distance field of the reference's occupied cells, which takes most of the time.
+/// Map error with a given distance field of the reference's occupied cells, which takes most of the time.
 MapError map_error(const OccupancyGrid& built, const Pose2& T_world_map, const ReferenceMap& reference,
                    const DistanceField& reference_field);
 

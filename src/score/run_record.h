@@ -32,7 +32,7 @@ struct RunRecord {
   std::optional<CalibrationEstimate> calibration;  ///< newest, if the stack estimates its calibration
   std::vector<Event> events;
   bool has_fall_report = false;                     ///< whether the firmware reported a fall
-  std::vector<LocalizationConfidence> confidences;  ///< by stamp
+  std::vector<LocalizationConfidence> confidences;  ///< confidences in ascending stamp order
   std::vector<TeleopCommand> teleop;
   std::vector<Collision> collisions;
   std::vector<LiningResult> linings;

@@ -140,7 +140,7 @@ class GridMap {
   /// Calls `visit(col, row)` for the surface cells of a window until it returns true, in ascending row order.
   template <typename Visitor>
   static bool visit_rows(const GridTile& tile, const LocalWindow& window, Visitor&& visit);
-  /// The same for a window of at most 8 columns and rows.
+  /// Version of `visit_rows` for a window of at most 8 columns and rows.
   template <typename Visitor>
   static bool visit_small(const GridTile& tile, const LocalWindow& window, Visitor&& visit);
 

@@ -9,18 +9,18 @@
 namespace patrol::slam {
 namespace {
 
-constexpr double kHalfWidth = 2.5;  ///< of the neighborhood along the arc, in standard deviations
-constexpr std::size_t kMinNeighbors = 2, kMaxNeighbors = 12;  ///< on each side
+constexpr double kHalfWidth = 2.5;  ///< half width of the neighborhood along the arc, in standard deviations
+constexpr std::size_t kMinNeighbors = 2, kMaxNeighbors = 12;  ///< numbers of neighbors on each side
 constexpr double kBiweight = 3.5;                             ///< residual of weight zero, in standard deviations
-constexpr double kInitialScale = 4.0;                         ///< of the first weights, in standard deviations
+constexpr double kInitialScale = 4.0;                         ///< scale of the first weights, in standard deviations
 constexpr int kInitialIterations = 2, kMaxIterations = 8;
 constexpr double kConverged_m = 1e-3;
-constexpr double kMinWeight = 0.3;  ///< of a range on the surface
+constexpr double kMinWeight = 0.3;  ///< minimum weight of a range on the surface
 constexpr int kMinOnSurface = 3;
 constexpr double kMinInverse_per_m = 0.01;
 
 struct Neighbor {
-  double cosine = 1.0, sine = 0.0;  ///< of the angle from the beam in the middle
+  double cosine = 1.0, sine = 0.0;  ///< cosine and sine of the angle from the beam in the middle
   double range_m = 0.0;
   double weight = 0.0;
 };

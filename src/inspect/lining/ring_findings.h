@@ -18,7 +18,7 @@ std::vector<LiningCell> lining_cells(const LiningGrid& grid, const Adjustment& a
 struct SectorDisplacement {
   bool is_observed = false;
   double inward_m = 0.0;
-  double residual_var_m2 = 0.0;  ///< without the registration uncertainty
+  double residual_var_m2 = 0.0;  ///< variance without the registration uncertainty
   Vector7 J = Vector7::Zero();   ///< derivative with respect to the parameters of the registration
 };
 std::vector<SectorDisplacement> smoothed_ring(const LiningGrid& grid, const Adjustment& adjustment, int ring);

@@ -50,7 +50,7 @@ class SurfaceCloud {
 
   struct Neighbors {
     std::size_t count = 0;
-    std::array<std::uint32_t, kNumNeighbors> index{};  ///< by increasing distance
+    std::array<std::uint32_t, kNumNeighbors> index{};  ///< indices of the points by increasing distance
     std::array<double, kNumNeighbors> squared_m2{};
   };
   Neighbors nearest(const Eigen::Vector3d& p, std::size_t count) const;

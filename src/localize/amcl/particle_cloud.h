@@ -14,7 +14,7 @@ namespace patrol::localize {
 struct ParticleCloud {
   std::vector<Pose2> T_map_body;
   std::vector<double> odometry_scale;  ///< scale error of the odometry distance: true / measured - 1
-  std::vector<double> log_weights;     ///< up to a constant common to all particles
+  std::vector<double> log_weights;     ///< log weights up to a constant common to all particles
 
   std::size_t size() const { return T_map_body.size(); }
   void add(const Pose2& pose, double scale, double log_weight = 0.0) {

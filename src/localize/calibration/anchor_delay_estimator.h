@@ -47,7 +47,7 @@ class AnchorDelayEstimator {
 
   AnchorDelayEstimatorSettings settings_;
   UwbCalibration calibration_;
-  std::map<int, Anchor> anchors_;  ///< by number
+  std::map<int, Anchor> anchors_;  ///< anchors by number
   ClusteredLeastSquares filter_;   ///< x, y, yaw of map in the survey; then the delays
 };
 

@@ -21,7 +21,7 @@ using Delays = std::map<int, double>;  // [anchor number], m
 struct Residual {
   Eigen::Vector3d r = Eigen::Vector3d::Zero();
   Eigen::Matrix3d J = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d J_delay = Eigen::Vector3d::Zero();  ///< with respect to the delay of the anchor; zero without one
+  Eigen::Vector3d J_delay = Eigen::Vector3d::Zero();  ///< derivative by the delay of the anchor; zero without one
   int size = 0;
 };
 
@@ -67,14 +67,14 @@ Residual residual_of(const SurveyedPose& pose, const Pose2& T_map_body, const Po
 /// Part of the normal equations of the delay of one anchor. A measurement contains one delay at most, so that delays
 /// have no information in common.
 struct DelayEquation {
-  double information = 0.0;  ///< with the prior
+  double information = 0.0;  ///< information of the delay, with its prior
   double gradient = 0.0;
-  Eigen::Vector3d cross_information = Eigen::Vector3d::Zero();  ///< with the pose
+  Eigen::Vector3d cross_information = Eigen::Vector3d::Zero();  ///< cross information of the delay and the pose
 };
 
 /// Normal equations of the robust problem at a linearization point.
 struct NormalEquations {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the measurements, without the prior of the pose
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< information without the prior of the pose
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   std::map<int, DelayEquation> delays;
   double squares = 0.0;  ///< weighted sum of squared residuals

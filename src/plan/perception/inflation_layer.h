@@ -39,7 +39,7 @@ class InflationLayer {
 
   /// Distance to the nearest obstacle's surface, interpolated between cells; at most `max_distance_m`.
   double distance_m(const Eigen::Vector2d& p_map) const;
-  /// The same at a position in the layer's lattice.
+  /// Interpolated distance at a position in the layer's lattice.
   double distance_m(const BilinearCell& at) const;
   double max_distance_m() const { return distance_of_.back(); }
   /// Sets the costs of `count` cells of a row.

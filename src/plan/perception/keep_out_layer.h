@@ -25,7 +25,7 @@ class KeepOutLayer {
   const std::vector<Polyline>& lines() const { return lines_; }
   /// Distance to the nearest line, interpolated between cells.
   double distance_m(const Eigen::Vector2d& p_map) const;
-  /// The same at a position in the layer's lattice.
+  /// Interpolated distance at a position in the layer's lattice.
   double distance_m(const BilinearCell& at) const;
   /// Raises the costs of `count` cells of a row to those of the lines.
   void raise_costs(Cell first, int count, Cost* cost) const;

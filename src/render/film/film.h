@@ -53,7 +53,7 @@ class Film {
   double frames_per_second_;
   Director director_;
   FilmSegments segments_;
-  std::unique_ptr<VideoWriter> video_;  ///< of segment `open_segment_`
+  std::unique_ptr<VideoWriter> video_;  ///< video of segment `open_segment_`
   int open_segment_ = -1;
   FrameRenderer painter_;
   std::deque<FrameInWork> in_work_;  ///< in the order of the film

@@ -27,10 +27,10 @@ struct RunHistory {
   bool log_is_complete = true;
   Trajectory T_world_body;  ///< ground truth
   std::vector<EstimateError> errors;
-  std::vector<Approach> approaches;  ///< to pedestrians and vehicles, within ApproachFinder::kMaxRange_m
+  std::vector<Approach> approaches;  ///< approaches to pedestrians and vehicles, within ApproachFinder::kMaxRange_m
   std::vector<Event> events;
   std::vector<Collision> collisions;
-  std::vector<RingFinding> ring_findings;  ///< of all lining results
+  std::vector<RingFinding> ring_findings;  ///< findings of all lining results
 };
 
 /// Reads the whole log. Throws InputError when the log cannot be read or belongs to another model than `view`.

@@ -37,7 +37,7 @@ class SpeedPlan {
   double speed(Time run_time) const;
 
  private:
-  /// Between two nodes, the pace is linear in run time.
+  /// Node of the plan. Between two nodes, the pace is linear in run time.
   struct Node {
     double run_s;
     double pace;

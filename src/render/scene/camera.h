@@ -14,7 +14,7 @@ namespace patrol::render {
 
 /// Viewpoint of the camera that follows the robot.
 enum class CameraKind {
-  kChase,    ///< behind and above the robot
+  kChase,    ///< view from behind and above the robot
   kTop,      ///< vertically down, north up; a roof is cut away
   kOnboard,  ///< from the robot's head, looking forward
 };

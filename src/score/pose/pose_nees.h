@@ -23,7 +23,7 @@ struct PoseNees {
 
   std::size_t num_instants = 0;
   std::size_t num_singular = 0;
-  double mean = 0.0;       ///< over the instants with a regular covariance; 0 without any
+  double mean = 0.0;       ///< mean over the instants with a regular covariance; 0 without any
   double within_95 = 0.0;  ///< fraction of all instants with the true pose inside the 95 % ellipsoid
 
   bool has_mean() const { return num_instants > num_singular; }

@@ -11,7 +11,7 @@ namespace patrol::score {
 
 /// Error of the pose in the survey frame, and of the registration of the map to it. `site` is world.
 struct SiteScore {
-  TrajectoryError pose;           ///< of the path as the robot places it in site
+  TrajectoryError pose;           ///< error of the path as the robot places it in site
   Pose2 T_site_map;               ///< last registration; the surveyed start in logs without one
   double position_error_m = 0.0;  ///< RMS distance by which the registration's error moves the driven path
   double yaw_error_deg = 0.0;     ///< absolute value

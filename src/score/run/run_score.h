@@ -76,20 +76,20 @@ struct EstimateScore {
   double pose_coverage = 0.0;  ///< fraction of the run within 0.2 s of a timely pose (live_trajectory.h)
   PoseNees nees;
   std::optional<AlignedError> aligned_pose;  ///< none when no fit is possible, e.g. of an estimate that never moves
-  std::optional<TrajectoryError> odometry;   ///< with odometry in the log
-  std::optional<MapError> map;               ///< with a map in the log and surfaces that the robot could see
+  std::optional<TrajectoryError> odometry;   ///< error of odometry; none without odometry in the log
+  std::optional<MapError> map;  ///< none without a map in the log or without surfaces that the robot could see
   double map_agreement = 0.0;
   std::vector<TrackedLocalizability> localizability;
   NavigationScore navigation;
   std::vector<StationError> stations;
-  std::vector<ScoredParameter> calibration;  ///< with an estimated calibration of an as-built robot
+  std::vector<ScoredParameter> calibration;  ///< parameters of an as-built robot; empty without an estimate
   std::vector<GoalError> goals;
-  std::optional<GoalError> docking;           ///< with a dock in the survey
-  std::optional<TrajectoryError> range_pose;  ///< with an estimate by odometry and UWB ranges
-  std::optional<KnownMapScore> known_map;     ///< with a confidence in the log
+  std::optional<GoalError> docking;           ///< error of docking; none without a dock in the survey
+  std::optional<TrajectoryError> range_pose;  ///< error of the estimate by odometry and UWB ranges; none without it
+  std::optional<KnownMapScore> known_map;     ///< scores on a known map; none without a confidence in the log
   InspectionScore inspection;
-  std::optional<LiningScore> lining;  ///< with a result in the log
-  std::optional<WaterScore> water;    ///< with a result in the log
+  std::optional<LiningScore> lining;  ///< score of the lining; none without a result in the log
+  std::optional<WaterScore> water;    ///< score of the water detection; none without a result in the log
 };
 
 struct RunScore {

@@ -58,7 +58,7 @@ class CalibratedScans {
 
  private:
   Calibration calibration_;
-  std::optional<Pose2> T_odom_last_;  ///< as recorded
+  std::optional<Pose2> T_odom_last_;  ///< odometry of the last scan as recorded
   Pose2 T_corrected_last_;
 };
 

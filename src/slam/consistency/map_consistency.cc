@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kKeptDistance_m = 0.1, kKeptAngleRad = 0.1;
 constexpr double kSegment_m = 5.0;
-constexpr double kMaxDistance_m = 10.0;  ///< between the centers of compared segments
+constexpr double kMaxDistance_m = 10.0;  ///< maximum distance between the centers of compared segments
 constexpr double kResolution_m = 0.1, kMaxExtent_m = 4000.0, kMaxFreeRange_m = 15.0;
 constexpr int kTracedBeams = 60;  ///< number of beams of a scan that are traced through free space
 constexpr int kMatchRadius = 2;   ///< cells

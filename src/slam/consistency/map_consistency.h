@@ -14,7 +14,7 @@ namespace patrol::slam {
 
 /// Two segments of the path that saw the same surfaces in different places of the map.
 struct Disagreement {
-  Eigen::Vector2d p_map;                  ///< between the centers of the segments
+  Eigen::Vector2d p_map;                  ///< midpoint between the centers of the segments
   std::optional<std::size_t> first_scan;  ///< first scan of the first segment; none: it is of an earlier session
   std::size_t second_scan = 0;            ///< first scan of the second segment
   /// Displacement and rotation of the second segment, about its center, with which its surfaces match the first.
@@ -24,12 +24,12 @@ struct Disagreement {
 /// Consecutive scans that matched no surfaces of the map.
 struct UnmatchedSegment {
   std::size_t first_scan = 0, num_scans = 0;
-  Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< of its first scan
+  Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< position of the first scan
 };
 
 /// Part of the path that neither scans nor odometry support (unsupported_path.h).
 struct UnsupportedPath {
-  UnmatchedSegment scans;        ///< of a gap between scans: begins after it and is empty
+  UnmatchedSegment scans;        ///< scans of the part; a gap between scans: empty, begins after the gap
   double contradiction_m = 0.0;  ///< length of the path that odometry contradicts
   double gap_s = 0.0;            ///< time without scans before the part; 0: the part has scans
 };
@@ -37,8 +37,8 @@ struct UnsupportedPath {
 /// Part of the path that only odometry connects with the part before it.
 struct UnconnectedPart {
   std::size_t first_scan = 0;
-  Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< of its first scan
-  double distance_m = 0.0;                          ///< along the path, of the interruption
+  Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< position of the first scan
+  double distance_m = 0.0;                          ///< length of the interruption along the path
 };
 
 /// Agreement of a map with the scans from which it was made, without ground truth.
@@ -47,7 +47,7 @@ struct MapConsistency {
   int num_compared = 0;                                   ///< pairs of segments that saw the same surfaces
   std::vector<Disagreement> disagreements = {};           ///< largest offset first
   std::size_t num_scans = 0;                              ///< scans with returns
-  std::size_t num_unmatched = 0;                          ///< of them, scans that matched no surfaces
+  std::size_t num_unmatched = 0;                          ///< number of scans with returns that matched no surfaces
   std::vector<UnmatchedSegment> unmatched_segments = {};  ///< most scans first
   std::vector<UnconnectedPart> unconnected = {};          ///< earliest first
   std::vector<UnsupportedPath> unsupported = {};          ///< most scans first; ConsistencyCheck leaves it empty
@@ -98,7 +98,7 @@ class ConsistencyCheck {
   std::vector<MatchedScan> scans_;
   std::vector<Keyframe> kept_;             ///< scans at least 0.1 m or 0.1 rad apart
   std::vector<std::size_t> kept_indices_;  ///< [kept scan]: its index
-  std::size_t max_beams_ = 0;              ///< of a scan
+  std::size_t max_beams_ = 0;              ///< maximum number of beams of a scan
 };
 
 }  // namespace patrol::slam

@@ -24,9 +24,9 @@ constexpr double kSlipRatio = 0.5;
 constexpr double kMapStd_m = 0.01, kMapStdRad = 0.005;
 constexpr std::size_t kMaxCalibrated = 600;     ///< segments
 constexpr int kMaxDelay = 3, kDelaySteps = 10;  ///< scans; steps per scan
-/// With a delay, the differences of the yaw changes are at most this fraction of those without.
+/// Maximum ratio of the differences of the yaw changes with a delay to those without.
 constexpr double kDelayGain = 0.7;
-constexpr double kMaxTurnDifferenceRad = 0.1;  ///< per scan; larger ones count as this
+constexpr double kMaxTurnDifferenceRad = 0.1;  ///< maximum difference per scan; larger ones count as this
 constexpr double kMinGap_s = 1.0, kGapRatio = 5.0;
 
 /// Largest of distance and turn, in units of a segment.

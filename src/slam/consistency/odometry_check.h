@@ -26,8 +26,8 @@ inline constexpr std::array<std::string_view, 4> kOdometryFaultNames = {"constan
 struct FaultyOdometry {
   OdometryFault fault{};
   std::size_t first_scan = 0, last_scan = 0;
-  double distance_m = 0.0;                          ///< along the mapped path
-  Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< of the first scan
+  double distance_m = 0.0;                          ///< distance along the mapped path
+  Eigen::Vector2d p_map = Eigen::Vector2d::Zero();  ///< position of the first scan
 };
 
 /// Estimate with its standard deviation.
@@ -44,9 +44,9 @@ struct OdometryHealth {
   std::optional<OdometryScale> distance;  ///< true distance / odometry distance
   std::optional<OdometryScale> turn;      ///< true yaw change / odometry yaw change
   std::optional<OdometryScale> steering;  ///< unmeasured yaw change to the left per meter; rad per m
-  double delay_s = 0.0;                   ///< of odometry; negative: it is ahead of the scans; 0: none found
+  double delay_s = 0.0;                   ///< delay of odometry; negative: it is ahead of the scans; 0: none found
   std::size_t num_gaps = 0;               ///< intervals between scans of more than 1 s and 5 times the median
-  double max_gap_s = 0.0;                 ///< of them
+  double max_gap_s = 0.0;                 ///< duration of the largest gap
   std::size_t max_gap_scan = 0;           ///< scan before the largest gap
 
   double faulty_ratio() const { return num_segments == 0 ? 0.0 : static_cast<double>(num_faulty) / num_segments; }

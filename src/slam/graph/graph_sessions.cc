@@ -20,8 +20,8 @@ namespace {
 constexpr double kMaxDisagreement_m = 0.5, kMaxDisagreementRad = 0.05;
 // Standard deviation of a submap that was located in the earlier map as a whole, for matches with its submaps.
 constexpr double kLocatedStd_m = 0.2, kLocatedStdRad = 0.02;
-constexpr double kMinLocatingScore = 0.4;  ///< of the search in the whole map
-constexpr double kPathMargin_m = 10.0;     ///< around the earlier path
+constexpr double kMinLocatingScore = 0.4;  ///< minimum score of the search in the whole map
+constexpr double kPathMargin_m = 10.0;     ///< margin around the earlier path
 constexpr int kSameSurfaceRadius = 2;      ///< cells
 /// A submap is not kept if more than this fraction of its surfaces lies in observed cells of the others, and agrees
 /// there as in a loop closure.

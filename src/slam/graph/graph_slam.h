@@ -159,9 +159,9 @@ class GraphSlam {
   std::vector<TrackedPose> path_;
   std::vector<Submap> submaps_;
   int finished_submaps_ = 0;
-  int first_keyframe_ = 0, first_submap_ = 0;  ///< of this session
+  int first_keyframe_ = 0, first_submap_ = 0;  ///< indices of the first keyframe and submap of this session
   bool is_located_ = true;
-  std::optional<RenderedSubmap> earlier_map_;  ///< as one submap, while the session is not located
+  std::optional<RenderedSubmap> earlier_map_;  ///< earlier map as one submap, while the session is not located
   std::vector<LocatedSubmap> located_;
   int last_located_keyframe_ = -1;  ///< last keyframe of the last submap that was searched in the earlier map
   PoseGraph graph_;
@@ -172,8 +172,8 @@ class GraphSlam {
   bool is_finished_ = false;
   PoseGaussian now_;  ///< current pose in map
   Time stamp_{};
-  std::vector<RangeMeasurement> new_ranges_;        ///< not yet gated
-  std::vector<PositionMeasurement> new_positions_;  ///< not yet added
+  std::vector<RangeMeasurement> new_ranges_;        ///< ranges that are not yet gated
+  std::vector<PositionMeasurement> new_positions_;  ///< positions that are not yet added
   SurveyFactors survey_;
   int smoothed_until_ = 0;  ///< newest node moved by the ranges
 };

@@ -23,7 +23,7 @@ class OdometryDelay {
   /// Adds the tracked yaw of that scan, rad.
   void update(double yaw_rad);
 
-  double scan_delay_s() const { return scan_delay_s_; }  ///< of the scans relative to their stamps; 0: none found
+  double scan_delay_s() const { return scan_delay_s_; }  ///< delay of the scans relative to their stamps; 0: none found
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
@@ -37,8 +37,8 @@ class OdometryDelay {
   struct Reading {
     Time stamp{};
     Pose2 T_odom_body;
-    double odometry_yaw_rad = 0.0;  ///< without wrapping
-    double tracked_yaw_rad = 0.0;   ///< without wrapping
+    double odometry_yaw_rad = 0.0;  ///< yaw of odometry without wrapping
+    double tracked_yaw_rad = 0.0;   ///< tracked yaw without wrapping
   };
 
   Reading odometry_at(Time stamp) const;

@@ -8,14 +8,14 @@ namespace patrol::slam {
 namespace {
 
 constexpr std::size_t kMinDifferences = 1000;
-constexpr double kMaxSpacing_m = 0.15;  ///< between neighboring beams
+constexpr double kMaxSpacing_m = 0.15;  ///< maximum distance between neighboring beams
 constexpr double kMadOfStd = 0.6745;    ///< median absolute deviation of a normal distribution
 constexpr double kMinAdapted_m = 0.04;
 constexpr int kMaxRadiusCells = 10;
 /// Noise of smoothed ranges, as a fraction of that of the measured ones: that of surfaces between corners is smaller.
 constexpr double kSmoothed = 0.6;
-/// In standard deviations of the smoothed ranges. Half of the noise is attributed to points, the remainder is the
-/// thickness of the surfaces in the map.
+/// Lengths in standard deviations of the smoothed ranges. Half of the noise is attributed to points, the remainder is
+/// the thickness of the surfaces in the map.
 constexpr double kRadius = 2.8, kFreeMargin = 3.5, kKernel = 2.5, kPointStd = 0.5;
 /// Smallest distance between keyframes, as a fraction of the usual one.
 constexpr double kMinKeyframeStep = 0.4;

@@ -29,7 +29,7 @@ struct TrackedScan {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   double inlier_ratio = 0.0;
   bool is_keyframe = false;
-  ScanGroup scans = {};  ///< of a keyframe
+  ScanGroup scans = {};  ///< scans of a keyframe
   /// Index of the matched submap: 0, 1, ...; a keyframe is part of it, including the last one, after which the next
   /// submap takes over.
   int submap = 0;
@@ -107,14 +107,14 @@ class ScanTracker {
     Pose2 T_odom_body;
     Pose2 T_last_odom;                  ///< step by calibrated odometry
     bool is_sparse = false;             ///< the scan has few returns
-    bool is_odometry_constant = false;  ///< although the robot moves
-    bool is_gap = false;                ///< by odometry, the robot left the search over possible motions
+    bool is_odometry_constant = false;  ///< odometry is constant although the robot moves
+    bool is_gap = false;                ///< odometry shows that the robot left the search over possible motions
   };
 
   /// Continuation of a track.
   struct Branch {
     std::size_t track = 0;
-    PoseGaussian prediction;  ///< by odometry
+    PoseGaussian prediction;  ///< pose predicted by odometry
     Hypothesis best;
     double score = 0.0;
   };
@@ -161,14 +161,14 @@ class ScanTracker {
   Pose2 T_odom_last_, T_local_keyframe_;
   std::vector<Track> tracks_ = std::vector<Track>(1);  ///< the one with the highest score first
   double last_step_s_ = 0.0;
-  Pose2 T_local_constant_;  ///< where odometry changed last
+  Pose2 T_local_constant_;  ///< tracked pose at the last change of odometry
   bool is_odometry_constant_ = false;
   OdometryDelay delay_;
   OdometryCorrection correction_;
   UsualMatch usual_;
   UnevenGround uneven_ground_;
   ScansSinceKeyframe scans_since_keyframe_;
-  std::optional<LikelihoodPyramid> pyramid_;  ///< of the older map; none: not needed since it has changed
+  std::optional<LikelihoodPyramid> pyramid_;  ///< pyramid of the older map; none: not needed since the map has changed
 };
 
 }  // namespace patrol::slam

@@ -25,8 +25,8 @@ constexpr int kNumShifts = 4;              // of shifted poses on either side th
 
 /// Surfaces that must overlap in a match.
 enum class Coverage {
-  kBoth,    ///< those of both submaps
-  kSource,  ///< those of the source, because the target is much larger
+  kBoth,    ///< surfaces of both submaps
+  kSource,  ///< surfaces of the source, because the target is much larger
 };
 
 /// Overlap of the surfaces of `source` with `target`, and the reverse.

@@ -27,7 +27,7 @@ class UsualMatch {
 
  private:
   double matched_ratio_ = 0.5;  ///< fraction of points on surfaces
-  double loss_ = 1.0;           ///< of a point in a known cell
+  double loss_ = 1.0;           ///< mean loss of a point in a known cell
 };
 
 }  // namespace patrol::slam

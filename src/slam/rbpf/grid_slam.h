@@ -94,8 +94,8 @@ class GridSlam {
   Pose2 T_odom_last_;      ///< odometry at the newest scan
   Pose2 T_odom_keyframe_;  ///< odometry at the last keyframe
   Time keyframe_stamp_{};
-  std::vector<RangeMeasurement> new_ranges_;  ///< not yet gated
-  std::vector<RangeMeasurement> ranges_;      ///< accepted since the last keyframe
+  std::vector<RangeMeasurement> new_ranges_;  ///< ranges that are not yet gated
+  std::vector<RangeMeasurement> ranges_;      ///< ranges accepted since the last keyframe
 };
 
 }  // namespace patrol::slam

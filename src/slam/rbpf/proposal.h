@@ -13,7 +13,7 @@ namespace patrol::slam {
 /// Proposal distribution of a particle and the resulting weight increment.
 struct Proposal {
   PoseGaussian posterior;             ///< pose given odometry, the particle's map and the scan
-  double log_weight_increment = 0.0;  ///< up to a constant that is equal for all particles
+  double log_weight_increment = 0.0;  ///< increment up to a constant that is equal for all particles
   double inlier_ratio = 0.0;  ///< inlier ratio of the scan (MatchResult); 0: no match, the posterior is the prediction
 
   /// Samples the posterior; `unit` is a standard normal vector.

@@ -45,7 +45,7 @@ class ScanOdometryRbpf {
   };
 
   std::optional<ScanTracker> tracker_;  ///< none with `odometry: given`
-  std::optional<OdometryPair> newest_;  ///< with a tracker
+  std::optional<OdometryPair> newest_;  ///< poses of the newest scan; none without a tracker
   TrajectoryRbpf filtered_;
 };
 

@@ -14,7 +14,7 @@ namespace patrol::slam {
 /// Reason for rejecting a submap pair.
 enum class ConstraintRejection {
   kNone,
-  kNotNeighbors,  ///< not recognized as neighbors
+  kNotNeighbors,  ///< submaps not recognized as neighbors
   kMismatch,      ///< coarse and fine matching disagree, or the inlier ratio is too small
   kAmbiguous,     ///< a second-best match has a similar score
 };

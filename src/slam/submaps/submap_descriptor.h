@@ -16,7 +16,7 @@ namespace patrol::slam {
 /// Descriptor of a submap for comparison with others, computed once. All coordinates are in submap.
 struct SubmapDescriptor {
   std::vector<Eigen::Vector2d> points;               ///< downsampled surface points
-  std::size_t num_points = 0;                        ///< before downsampling
+  std::size_t num_points = 0;                        ///< number of surface points before downsampling
   Eigen::Vector2d center = Eigen::Vector2d::Zero();  ///< mean of the points
   double radius_m = 0.0;                             ///< root mean square distance of the points from the center
   ConvexPolygon hull;                                ///< convex hull of the points

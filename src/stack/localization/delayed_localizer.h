@@ -15,8 +15,8 @@ namespace patrol::stack {
 struct PoseCorrection {
   Time due{};  ///< instant at which it takes effect
   Time stamp{};
-  Pose2 T_odom_body;           ///< at the stamp
-  PoseEstimate estimate = {};  ///< at the stamp
+  Pose2 T_odom_body;           ///< odometry at the stamp
+  PoseEstimate estimate = {};  ///< pose estimate at the stamp
   StackOutput output = {};     ///< messages of the localizer
 };
 
@@ -60,7 +60,7 @@ class DelayedLocalizer {
   std::unique_ptr<Localizer> localizer_;
   Time delay_;
   std::deque<Pending> pending_;               ///< in the order of their scans
-  BackgroundWorker::Ticket last_ticket_ = 0;  ///< of everything that was given to the worker
+  BackgroundWorker::Ticket last_ticket_ = 0;  ///< ticket of the last task of the worker
   std::unique_ptr<BackgroundWorker> worker_;  ///< last member: its thread ends before the others do
 };
 

@@ -15,7 +15,7 @@ namespace patrol::stack {
 
 struct LocalizerStart {
   std::optional<OccupancyGrid> map = {};                  ///< given map, in map
-  std::optional<SiteRegistration> map_registration = {};  ///< of the given map, if it has been estimated
+  std::optional<SiteRegistration> map_registration = {};  ///< registration of the given map, if it has been estimated
   bool has_mapping_drive = false;                         ///< true: the mission begins with a drive that makes the map
   BoostedStumps neighbor_model = {};                      ///< classifier of submap pairs, for SLAM methods that need it
 };

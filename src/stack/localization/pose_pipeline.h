@@ -124,7 +124,7 @@ class PosePipeline {
   Pose2 T_start_site_;
   std::optional<Pose3> T_body_gnss_;    ///< present for a robot with a GNSS antenna
   double max_mapping_tilt_rad_;         ///< tilt above which the SLAM method does not use scans
-  ScanCounts scan_counts_;              ///< of all received scans
+  ScanCounts scan_counts_;              ///< counts of all received scans
   std::size_t num_scans_ = 0;           ///< scans that have corrected the pose
   std::vector<Time> mapped_;            ///< stamps of the scans while the robot maps
   std::vector<Pose2> T_map_mapped_;     ///< [scan] body pose at each of them, as estimated then

@@ -11,7 +11,7 @@ namespace patrol::stack {
 /// Numbers of 2D scans by their use in a map.
 struct ScanCounts {
   std::uint64_t num_received = 0;
-  std::uint64_t num_without_pose = 0;  ///< before the odometry has settled, or outside its time span
+  std::uint64_t num_without_pose = 0;  ///< scans before the odometry has settled, or outside its time span
   std::uint64_t num_without_hits = 0;  ///< no hit within range and height band, outside the self filter
   std::uint64_t num_tilted = 0;        ///< tilted by more than the maximum tilt of the SLAM method
 

@@ -33,8 +33,8 @@ class SiteFollower {
   Route site_in_start_;
   Pose2 T_start_site_;
   double min_shift_m_;
-  Eigen::AlignedBox2d extent_;  ///< of stations, keep-out lines, anchors and dock
-  Pose2 T_start_map_;           ///< of the survey handed out last
+  Eigen::AlignedBox2d extent_;  ///< bounding box of start, stations, keep-out lines, anchors and dock
+  Pose2 T_start_map_;           ///< pose of map with which the last survey was moved
 };
 
 }  // namespace patrol::stack

@@ -17,15 +17,15 @@ namespace patrol::stack {
 /// Pose of the body relative to a scan: it follows the scan's pose when the map changes.
 struct PoseFromScan {
   std::size_t scan = 0;  ///< index of the scan
-  Pose2 T_scan_body;     ///< by odometry
-  Pose2 T_map_body;      ///< by the present map
+  Pose2 T_scan_body;     ///< pose relative to the scan, by odometry
+  Pose2 T_map_body;      ///< pose in the present map
 };
 
 /// Position of the GNSS antenna in site.
 struct GnssPosition {
   Time stamp{};
   bool is_float = false;            ///< true: float solution, false: RTK fix
-  double correlation_time_s = 0.0;  ///< of the receiver's error
+  double correlation_time_s = 0.0;  ///< correlation time of the receiver's error
   localize::AntennaPosition content;
 };
 
@@ -80,8 +80,8 @@ class SiteRegistrar {
   SiteFrame site_;
   UwbCalibration uwb_;
   localize::SitePoseGaussian prior_;
-  double spacing_factor_ = 1.0;             ///< of the minimum distances, doubled each time the entries are thinned out
-  std::vector<Entry> entries_;              ///< in ascending time order
+  double spacing_factor_ = 1.0;  ///< factor of the minimum distances, doubled each time the entries are thinned out
+  std::vector<Entry> entries_;   ///< in ascending time order
   std::map<int, PoseFromScan> last_poses_;  ///< [source] pose of the newest entry
   std::map<int, Time> last_stamps_;         ///< [source] stamp of the newest entry
   std::optional<SiteRegistration> published_;

@@ -49,7 +49,7 @@ class ClockMonitor {
   ClockMonitorSettings settings_;
   State state_ = State::kFine;
   int num_steps_ = 0;
-  std::deque<Time> steps_;  ///< of the last `step_window_s`
+  std::deque<Time> steps_;  ///< times of the clock steps of the last `step_window_s`
 };
 
 }  // namespace patrol::stack

@@ -13,7 +13,7 @@ namespace patrol::plan {
 struct Rollout {
   double vx_mps = 0.0;
   double yaw_rate_radps = 0.0;
-  double vy_mps = 0.0;            ///< to the left
+  double vy_mps = 0.0;            ///< lateral velocity, positive to the left
   std::vector<Pose2> T_map_body;  ///< poses at equal time steps, without the current pose
   double min_clearance_m = 0.0;   ///< minimum clearance of the robot's outline over all poses
 };
