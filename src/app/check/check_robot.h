@@ -23,12 +23,12 @@ const char* name_of(DriveKind kind);
 
 /// Speeds and accelerations that the firmware of a robot accepts.
 struct DriveLimits {
-  double max_speed_mps = 0.0;                ///< forward; on wheels at most the no-load speed of the slowest motor
-  double max_yaw_rate_radps = 0.0;           ///< at the maximum speed of the outer wheels or track
-  double max_acceleration_mps2 = 0.0;        ///< of the commanded velocity, also when stopping
-  double max_yaw_acceleration_radps2 = 0.0;  ///< of the commanded yaw rate
+  double max_speed_mps = 0.0;          ///< forward; on wheels at most the no-load speed of the slowest motor
+  double max_yaw_rate_radps = 0.0;     ///< maximum yaw rate, at the maximum speed of the outer wheels or track
+  double max_acceleration_mps2 = 0.0;  ///< maximum change of the commanded velocity per second, also when stopping
+  double max_yaw_acceleration_radps2 = 0.0;  ///< maximum change of the commanded yaw rate per second
   double min_turning_radius_m = 0.0;         ///< 0: the robot turns in place
-  double max_lateral_speed_mps = 0.0;        ///< of mecanum wheels; 0: the check has no lateral motion
+  double max_lateral_speed_mps = 0.0;  ///< maximum lateral speed of mecanum wheels; 0: the check has no lateral motion
 };
 
 /// Lidar of a robot.
@@ -63,9 +63,9 @@ struct CheckRobot {
   /// wheels, three standard deviations of the gauge ratio by the as-built radii are added.
   double yaw_tolerance = 0.15;
   double reaction_s = 0.1;         ///< time in which the firmware follows a command: with legs a period of the gait
-  std::vector<CheckLidar> lidars;  ///< that the settings enable
-  localize::ScanLevelerSettings scan_leveling = {};  ///< of the built-in stack
-  sim::SimulatorSettings simulator;                  ///< without world and start pose
+  std::vector<CheckLidar> lidars;  ///< lidars that the settings enable
+  localize::ScanLevelerSettings scan_leveling = {};  ///< settings of the built-in stack
+  sim::SimulatorSettings simulator;                  ///< settings of the simulator without world and start pose
 
   bool turns_in_place() const { return limits.min_turning_radius_m == 0.0; }
 };

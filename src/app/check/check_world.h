@@ -7,9 +7,9 @@
 namespace patrol::app {
 
 inline constexpr double kRampAngle_deg = 10.0;
-inline constexpr double kRampLength_m = 3.0;   ///< along the slope, up and down
+inline constexpr double kRampLength_m = 3.0;   ///< length along the slope, up and down
 inline constexpr double kRampTop_m = 2.0;      ///< level part between the slopes
-inline constexpr double kStepHeight_m = 0.03;  ///< of each step
+inline constexpr double kStepHeight_m = 0.03;  ///< height of each step
 inline constexpr int kNumSteps = 3;
 inline constexpr double kStepSpacing_m = 0.5;
 inline constexpr double kStepTop_m = 1.5;  ///< level part between the steps up and down

@@ -9,16 +9,16 @@ namespace patrol::app {
 
 /// State of a check drive by ground truth. Motor values are those of the time since the sample before.
 struct DriveSample {
-  double time_s = 0.0;  ///< since the start of the record
+  double time_s = 0.0;  ///< time since the start of the record
   Pose3 T_world_body;
   Pose2 T_start_center;            ///< turn center of the robot relative to its start
-  double yaw_rad = 0.0;            ///< relative to the start, unwrapped
+  double yaw_rad = 0.0;            ///< yaw relative to the start, unwrapped
   Pose2 T_start_commanded;         ///< integral of the commands
   double commanded_yaw_rad = 0.0;  ///< integral of the commanded yaw rate
   double speed_mps = 0.0;          ///< forward, in body
   double yaw_rate_radps = 0.0;
   double commanded_speed_mps = 0.0;
-  double commanded_lateral_mps = 0.0;  ///< to the left
+  double commanded_lateral_mps = 0.0;  ///< commanded lateral speed, positive to the left
   double commanded_yaw_rate_radps = 0.0;
   double ground_travel_m = 0.0;    ///< integral of the forward speed
   double left_travel_m = 0.0;      ///< mean travel of the left wheels or track by their joints and nominal radii

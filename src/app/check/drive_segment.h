@@ -13,7 +13,7 @@ struct DriveSegment {
   double ramp_s = 0.0;      ///< duration of the rise and of the fall
   /// The segment ends when the robot is at this distance ahead of its start, m, and at the latest after `duration_s`.
   std::optional<double> goal_ahead_m = std::nullopt;
-  double vy_mps = 0.0;               ///< to the left
+  double vy_mps = 0.0;               ///< lateral velocity, positive to the left
   bool is_stopped_abruptly = false;  ///< the command falls to zero at once
   double rest_s = 0.0;               ///< time without command after the fall
 };

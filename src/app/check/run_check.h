@@ -13,7 +13,7 @@ namespace patrol::app {
 /// Result of a check drive.
 struct CheckResult {
   CheckRobot robot;
-  std::vector<std::string> warnings;  ///< on its lidars (blocked_beams.h, scan_reach.h)
+  std::vector<std::string> warnings;  ///< warnings about its lidars (blocked_beams.h, scan_reach.h)
   std::vector<ManeuverResult> maneuvers;
 
   bool is_passed() const;

@@ -33,7 +33,7 @@ constexpr std::string_view name_of(SurfaceKind kind) { return row_of(kSurfaceKin
 /// Geoms of one kind.
 struct SurfaceGroup {
   int num_geoms = 0;
-  int num_lidar = 0;                  ///< of them visible to lidars
+  int num_lidar = 0;                  ///< number of geoms that are visible to lidars
   std::vector<std::string> examples;  ///< names of the first geoms
 };
 

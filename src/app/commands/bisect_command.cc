@@ -30,7 +30,7 @@ namespace {
 struct TracedRun {
   std::filesystem::path root;
   std::string program;
-  std::string name;  ///< of the program in messages, with its option if there is one
+  std::string name;  ///< name of the program in messages, with its option if there is one
 };
 
 /// Program of an option, or else this program. Throws InputError if it is not found.

@@ -13,8 +13,8 @@ namespace patrol::app {
 namespace {
 
 constexpr std::size_t kListed = 20;  ///< disagreements in metrics.json
-constexpr std::size_t kShown = 8;    ///< of them, on the page
-constexpr std::size_t kMarked = 3;   ///< of them, on the map
+constexpr std::size_t kShown = 8;    ///< disagreements on the page
+constexpr std::size_t kMarked = 3;   ///< entries of each kind on the map
 
 std::string place(const Eigen::Vector2d& p_map) { return fmt::format("({:.1f}, {:.1f})", p_map.x(), p_map.y()); }
 

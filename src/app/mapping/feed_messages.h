@@ -15,8 +15,8 @@ namespace patrol::app {
 
 /// Messages of an MCAP file that a stack can be fed with as they were recorded.
 struct RecordedMessages {
-  std::vector<io::McapChannel> channels;          ///< by topic in the file: their names for the stack
-  std::uint64_t num_messages = 0;                 ///< on these channels
+  std::vector<io::McapChannel> channels;  ///< channels with their topics for the stack, in ascending topic order
+  std::uint64_t num_messages = 0;         ///< number of messages on `channels`
   std::map<std::string, std::uint64_t> left_out;  ///< number of messages by topic: not CDR with a ROS 2 definition
   Time start{};                                   ///< log time of the first of them
   bool is_complete = true;                        ///< false: truncated

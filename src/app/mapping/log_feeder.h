@@ -55,7 +55,7 @@ class LogFeeder {
   std::unique_ptr<StackPort> stack_;
   io::RunLogWriter log_;
   Time now_{};
-  bool has_new_messages_ = false;  ///< since the last turn
+  bool has_new_messages_ = false;  ///< whether a message has arrived since the last turn
   Time next_turn_{};
   FedAnswers fed_;
 };

@@ -36,7 +36,7 @@ class MappingStack final : public StackPort {
   std::optional<Pose2> T_odom_first_, T_odom_last_;  ///< odometry at the first and the last beam of the next scan
   std::vector<Time> stamps_;
   Time turn_{};                              ///< last turn
-  std::vector<PublishedMessage> published_;  ///< since the last turn
+  std::vector<PublishedMessage> published_;  ///< messages published since the last turn
   double seconds_ = 0.0;                     ///< CPU time
 };
 

@@ -12,7 +12,7 @@ namespace patrol::app {
 namespace {
 
 constexpr std::size_t kListedFaults = 20;  ///< places in metrics.json
-constexpr std::size_t kShownFaults = 8;    ///< of them, on the page
+constexpr std::size_t kShownFaults = 8;    ///< places on the page
 /// More faulty segments than this are worth a warning; from kMostly on, a fault is named as a property of the log.
 constexpr double kMaxFaulty = 0.05, kMostly = 0.5;
 /// Scales further from 1, and a steering bias larger than this, are worth a warning.

@@ -39,7 +39,7 @@ class PlanMap {
   std::string extent() const;
 
   std::optional<io::MovingAiMap> moving_ai_;
-  OccupancyGrid occupancy_;  ///< of a map_server map
+  OccupancyGrid occupancy_;  ///< grid of a map_server map
 };
 
 }  // namespace patrol::app

@@ -14,7 +14,7 @@ namespace patrol::app {
 struct RouteMetrics {
   plan::Route route;
   int num_turns = 0;                         ///< points at which the direction changes
-  double processor_s = 0.0, wall_s = 0.0;    ///< of the planner alone
+  double processor_s = 0.0, wall_s = 0.0;    ///< CPU and wall time of the planner alone
   std::optional<double> octile_length = {};  ///< minimum over eight neighbors, by A*; none without a route
   std::optional<double> octile_cost = {};    ///< minimum cost over eight neighbors; none without cost weight
   std::optional<double> any_angle_length = {};

@@ -26,7 +26,7 @@ struct LidarCalibrationSettings {
 struct LidarCalibration {
   realism::LidarFit fit;
   realism::LidarDevice fitted;
-  RealismResult by_preset, by_fit;  ///< on the second half
+  RealismResult by_preset, by_fit;  ///< comparisons on the second half
   double ks_ratio() const { return by_fit.ks() / by_preset.ks(); }
 };
 

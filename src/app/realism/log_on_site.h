@@ -57,10 +57,10 @@ struct LogOnSiteOptions {
 /// Sources of the comparison, resolved.
 struct LogOnSite {
   std::filesystem::path log, world_xml;
-  std::string path_name, lidar_name;  ///< for display
+  std::string path_name, lidar_name;  ///< names for messages and pages
   bool is_run = false;                ///< log of `patrol run`
   Trajectory T_site_body;
-  std::optional<Pose3> T_body_lidar;  ///< of a run: by the robot's description, and with its true path as built;
+  std::optional<Pose3> T_body_lidar;  ///< mount of a run: by the robot's description, with its true path as built;
                                       ///< none: planar, by the log
   /// Lidar of the preset. For a run on its true path, it has the tilt and the cone of the beams as built.
   realism::LidarDevice device;
@@ -76,8 +76,8 @@ LogOnSite find_log_on_site(const LogOnSiteOptions& options, const LogOnSiteSetti
 struct ScansOnPath {
   std::vector<realism::PosedScan> scans;
   std::size_t num_read = 0;     ///< scans of the log
-  std::size_t num_outside = 0;  ///< of those used, outside of the time of the path
-  double lidar_height_m = 0.0;  ///< of the first scan
+  std::size_t num_outside = 0;  ///< number of used scans outside of the time of the path
+  double lidar_height_m = 0.0;  ///< height of the lidar in site at the first scan
   bool is_height_assumed = false;
   io::ScanLogSummary summary;
 };

@@ -18,8 +18,8 @@ struct RealismResult {
   realism::PositionedScans recorded;
   realism::PositionedScans simulated;  ///< at the poses of the recorded ones, positioned in the same way
 
-  realism::ResidualDistribution residual() const;            ///< of the static surfaces, recorded
-  realism::ResidualDistribution simulated_residual() const;  ///< of the static surfaces, simulated
+  realism::ResidualDistribution residual() const;            ///< residuals of the recorded static surfaces
+  realism::ResidualDistribution simulated_residual() const;  ///< residuals of the simulated static surfaces
   double ks() const;                                         ///< distance of these two
 };
 

@@ -15,7 +15,7 @@ struct RunDirectory {
 
   std::filesystem::path scenario() const { return root / "scenario.yaml"; }
   std::filesystem::path log() const { return root / "log.mcap"; }
-  std::filesystem::path stack_output() const { return root / "stack.log"; }  ///< of a stack in another process
+  std::filesystem::path stack_output() const { return root / "stack.log"; }  ///< output of a stack in another process
   std::filesystem::path nav() const { return root / "nav.json"; }
   std::filesystem::path registration() const { return root / "registration.json"; }
   std::filesystem::path teleop() const { return root / "teleop.csv"; }

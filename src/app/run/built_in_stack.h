@@ -39,9 +39,9 @@ class BuiltInStack final : public StackPort {
 
   stack::Stack stack_;
   stack::ComputeSettings compute_;
-  StackAnswer answer_;                            ///< to the last turn
-  std::vector<link::DeliveredMessage> messages_;  ///< that the stack has not got
-  std::size_t num_bytes_ = 0;                     ///< of them
+  StackAnswer answer_;                            ///< answer to the last turn
+  std::vector<link::DeliveredMessage> messages_;  ///< messages that the stack has not received
+  std::size_t num_bytes_ = 0;                     ///< total size of `messages_`
   BackgroundWorker::Ticket last_task_ = 0, turn_task_ = 0;
   BackgroundWorker worker_;  ///< last member: its thread ends before the others do
 };

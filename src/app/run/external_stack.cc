@@ -26,9 +26,9 @@ namespace {
 using link::LinkError;
 using link::LinkFault;
 
-constexpr std::chrono::seconds kTimeToEnd{2};              ///< of the process after the last turn
-constexpr std::chrono::milliseconds kTimeToDie{200};       ///< of a process whose connection has closed
-constexpr Time kStampTolerance = std::chrono::seconds(1);  ///< of stamps before the start and after the turn
+constexpr std::chrono::seconds kTimeToEnd{2};         ///< time for the exit of the process after the last turn
+constexpr std::chrono::milliseconds kTimeToDie{200};  ///< time for the exit of a process whose connection has closed
+constexpr Time kStampTolerance = std::chrono::seconds(1);  ///< tolerance of stamps before the start and after the turn
 
 }  // namespace
 

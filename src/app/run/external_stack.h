@@ -31,7 +31,7 @@ struct StackDocuments {
   std::string known_map;                           ///< encoded message on /site_map; empty: the robot builds a map
   std::vector<io::McapChannel> recorded = {};      ///< topics of a recorded log beside those that Patrol knows
   std::set<std::string> unanswered = {};           ///< topics of commands to instruments that the robot lacks
-  std::optional<EventSubjects> subjects = {};      ///< of the scored events; nullopt: not known, of a recorded log
+  std::optional<EventSubjects> subjects = {};  ///< subjects of the scored events; nullopt: not known for a recorded log
 };
 
 /// Connection to a stack in another process.
@@ -79,20 +79,20 @@ class ExternalStack final : public StackPort {
   StackDocuments documents_;
   StackConnection connection_;
   stack::StackSettings settings_;
-  std::optional<link::Address> address_;   ///< at which the stack connects
-  std::optional<link::Socket> listener_;   ///< until the stack has connected
-  std::optional<TemporaryFolder> folder_;  ///< of the socket of a process that Patrol starts
+  std::optional<link::Address> address_;   ///< address at which the stack connects
+  std::optional<link::Socket> listener_;   ///< listening socket until the stack has connected
+  std::optional<TemporaryFolder> folder_;  ///< folder of the socket for a process that Patrol starts
   std::optional<link::StackProcess> process_;
   std::optional<link::StackServer> server_;
   Time turn_{};                   ///< last turn
-  Time newest_stamp_{};           ///< of the delivered messages
+  Time newest_stamp_{};           ///< newest stamp of the delivered messages
   std::set<std::string> warned_;  ///< topics with a warning
   std::optional<double>
       cpu_start_s_;  ///< CPU time of the stack at the start of the turn; nullopt unless it delays the messages
   double wait_s_ = 0.0;
   bool is_finished_ = false;                ///< the stack has ended its last turn
   std::atomic<bool> is_abandoned_ = false;  ///< the run ends before the stack has connected
-  std::future<void> connecting_;  ///< until the stack has connected; last, because its thread uses the other members
+  std::future<void> connecting_;  ///< wait for the stack to connect; last, because its thread uses the other members
 };
 
 }  // namespace patrol::app

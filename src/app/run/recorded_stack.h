@@ -29,7 +29,7 @@ class RecordedStack final : public StackPort {
   /// Message of the log that has a part in the answers: of the stack, or the record of a turn.
   struct Entry {
     Time log_time{};
-    PublishedMessage message;             ///< of the stack
+    PublishedMessage message;             ///< message of the stack
     std::optional<StackTurnRecord> turn;  ///< record of a turn instead
     bool follows_truth = false;           ///< the ground truth of the same time precedes it: published at the end
   };
@@ -42,7 +42,7 @@ class RecordedStack final : public StackPort {
   Time end_{};
   bool has_turns_ = false;
   io::McapReader reader_;
-  Time truth_time_ = Time::min();  ///< of the last message of the ground truth
+  Time truth_time_ = Time::min();  ///< time of the last message of the ground truth
   std::optional<Entry> next_;
 };
 

@@ -27,7 +27,7 @@ io::JunitSuite junit_suite(const std::string& name, const std::vector<std::pair<
 /// End of a run before the end of its mission.
 struct EarlyEnd {
   RunStatus status = RunStatus::kFailed;
-  std::string message;  ///< as in RunVerdict
+  std::string message;  ///< message as in RunVerdict
 };
 
 /// Reads from the report of a run how it ended early. Returns nullopt for a run whose mission was over, and without a

@@ -329,21 +329,21 @@ class ClosedLoop {
   StageProfiler profiler_;
   Schedule truth_due_, state_due_, progress_due_{2.0};
   Time limit_;
-  std::vector<KidnapSettings> kidnaps_;  ///< by time
+  std::vector<KidnapSettings> kidnaps_;  ///< kidnappings in ascending time order
   Eigen::Vector3d last_position_;
   double distance_m_ = 0.0;
   Time turn_{};                        ///< last turn
   bool turn_is_running_ = false;       ///< the stack has begun the turn and may compute
   std::optional<StackAnswer> answer_;  ///< answer that has not taken effect
   Time answer_time_{}, next_turn_{};
-  Time command_time_{};  ///< of the last velocity command
+  Time command_time_{};  ///< time of the last velocity command
   std::optional<Time> fall_time_;
   bool mission_is_over_ = false;
   RunOutcome outcome_;
-  Time start_{};                   ///< of this part
+  Time start_{};                   ///< start of this part
   std::uint64_t messages_ = 0;     ///< hash of the traced messages
   Time next_snapshot_{};           ///< periodic
-  std::size_t num_snapshots_ = 0;  ///< of the given instants
+  std::size_t num_snapshots_ = 0;  ///< number of snapshots made at the given instants
 };
 
 }  // namespace

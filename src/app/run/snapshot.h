@@ -13,7 +13,7 @@ namespace patrol::app {
 /// State of a run at an instant: simulator, built-in stack and the loop between them.
 struct RunState {
   Time time{};
-  std::string bytes;  ///< by StateArchive
+  std::string bytes;  ///< state written by StateArchive
 };
 
 /// Identity of the runs whose states are exchangeable: program, scenario and the files that it names.

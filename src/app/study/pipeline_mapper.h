@@ -18,7 +18,7 @@ class PipelineMapper {
   /// Processes a log. Throws InputError if it is damaged or yields no map.
   void map(const std::filesystem::path& log_mcap);
 
-  const Trajectory& T_map_body() const { return T_map_body_; }  ///< at every scan
+  const Trajectory& T_map_body() const { return T_map_body_; }  ///< pose at every scan
   OccupancyGrid map() { return pipeline_.map(); }
   double seconds() const { return seconds_; }  ///< processor time of SLAM
 

@@ -10,9 +10,9 @@ namespace patrol::app {
 
 /// World with positions for panoramic scans, and with roads on which its site is compared.
 struct ScannedWorld {
-  std::string name;                  ///< of the world in worlds/
-  std::string scenario;              ///< navigation in the world, below the data root
-  double step_deg = 0.0;             ///< of the scanner; the 12 scans together have about 19 million points
+  std::string name;       ///< name of the world in worlds/
+  std::string scenario;   ///< navigation in the world, below the data root
+  double step_deg = 0.0;  ///< angular step of the scanner; the 12 scans together have about 19 million points
   double elevation_min_deg = -60.0;  ///< lowest elevation of the beams of the scanner
   std::vector<Eigen::Vector2d> scanners_m;
   std::vector<std::vector<Eigen::Vector2d>> roads_m;  ///< center lines

@@ -216,7 +216,7 @@ class Batch {
   std::vector<std::size_t> branches_;  ///< runs after these
   std::set<std::size_t> ended_once_;   ///< runs whose process was ended from outside
   std::size_t num_done_ = 0, num_failed_ = 0;
-  std::string output_error_;  ///< of a run whose output cannot be written; empty: none
+  std::string output_error_;  ///< error of a run whose output cannot be written; empty: none
   ProgressBar bar_;
   InterruptGuard interrupt_;
 };

@@ -16,7 +16,7 @@ struct BatchRun {
   std::filesystem::path scenario;
   std::vector<std::string> overrides;
   std::string key;    ///< content hash or name under which the result is stored
-  std::string label;  ///< for display
+  std::string label;  ///< name of the run for display
 };
 
 /// Runs whose directories are kept as `runs/KEY/` after scoring.

@@ -26,7 +26,7 @@ struct Contribution {
 struct Budget {
   std::string metric;
   std::optional<score::Interval> baseline;
-  std::optional<score::Interval> ideal;        ///< with every error source removed
+  std::optional<score::Interval> ideal;        ///< metric with every error source removed
   std::vector<Contribution> contributions;     ///< largest first
   std::optional<score::Interval> sum;          ///< sum of the contributions
   std::optional<score::Interval> interaction;  ///< effect of removing all together minus the sum of the contributions

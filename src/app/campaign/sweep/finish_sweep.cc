@@ -16,7 +16,7 @@ namespace {
 struct Findings {
   std::vector<io::Table> tables;
   std::string text;
-  std::string markdown;  ///< for documents; empty if there is no such form
+  std::string markdown;  ///< Markdown text for documents; empty if there is no such form
 };
 
 Findings findings_of(const SweepManifest& manifest, const SweepRows& rows, const SweepProgress& progress) {

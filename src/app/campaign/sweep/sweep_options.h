@@ -24,7 +24,7 @@ struct SweepOptions {
   std::string shard;  ///< "i/n"; empty: all
   std::string engine = "local";
   int slurm_tasks = 8;                     ///< tasks of the job array; each runs a shard
-  std::vector<std::string> slurm_options;  ///< for sbatch, "--partition=long"
+  std::vector<std::string> slurm_options;  ///< options for sbatch, "--partition=long"
   bool detach = false;                     ///< submit without waiting
   std::filesystem::path out = "out/sweep";
   ResultForm form = ResultForm::kText;

@@ -21,7 +21,7 @@ struct SeedRun {
 struct CalibratedMetric {
   std::string metric;
   std::optional<io::Expectation> present;
-  std::vector<double> values;               ///< of the seeds that measured it, in the order of the seeds
+  std::vector<double> values;               ///< values of the seeds that measured the metric, in the order of the seeds
   std::optional<io::Expectation> proposed;  ///< none if the values give none
   std::string note;                         ///< "measured with 8 of 10 seeds"
 
@@ -58,7 +58,7 @@ std::string expect_section(const Calibration& calibration, bool may_widen);
 
 /// One row per metric: scenario, present limits, number of seeds, lowest and highest value, proposal, slack, note.
 io::Table calibration_table(const std::vector<Calibration>& calibrations);
-/// The same as text for a terminal, one scenario.
+/// Formats the table of one scenario as text for a terminal.
 std::string calibration_text(const Calibration& calibration);
 
 }  // namespace patrol::app

@@ -18,7 +18,7 @@ struct TestedScenario {
   std::filesystem::path file;
   std::vector<std::string> overrides;                           ///< "path=value"
   std::string key;                                              ///< name of its result: "0007_street_patrol"
-  std::vector<std::pair<std::string, std::string>> properties;  ///< for JUnit: world, robot, seed, build
+  std::vector<std::pair<std::string, std::string>> properties;  ///< properties for JUnit: world, robot, seed, build
   std::optional<RunVerdict> verdict;                            ///< none before the run
 };
 
