@@ -54,7 +54,7 @@ struct Street {
   }
 
   WalkingRobot robot;
-  sim::DataPtr data;  ///< of the view model
+  sim::DataPtr data;  ///< data of the view model
   sim::LidarScene scene;
   Pose3 T_body_lidar = io::load_robot_description(sim::kRobotUrdf).T_body_sensor.at("lidar");
   Eigen::Vector3d origin;
@@ -70,7 +70,7 @@ double cast_all(const Street& street) {
   return sum;
 }
 
-/// The same in cones of 32 beams, as the lidar casts them.
+/// Casts the rays in cones of 32 beams, as the lidar does.
 double cast_in_cones(const Street& street) {
   constexpr std::size_t kRaysPerCone = 32;
   std::vector<sim::Ray> rays;
@@ -159,7 +159,7 @@ void RaysAgainstBareEmbree(benchmark::State& state) {
 }
 BENCHMARK(RaysAgainstBareEmbree)->UseManualTime()->Unit(benchmark::kMicrosecond);
 
-/// What a tick of 2 ms costs with everything: bodies moved, 64 beams fired, noise drawn.
+/// Cost of a tick of 2 ms with moved bodies, 64 fired beams and noise.
 void LidarTick(benchmark::State& state) {
   Street street;
   sim::Lidar lidar(LidarSettings::of_preset("rplidar_s2"), street.scene, street.T_body_lidar, sim::kRayLidar2d, 1,

@@ -37,7 +37,7 @@ class MemoryFile {
   int descriptor_;
 };
 
-/// What must hold of everything that a reader takes for good.
+/// Aborts with a message if a condition on accepted input does not hold.
 inline void require(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "does not hold: %s\n", what);

@@ -29,7 +29,7 @@ inline void check_scan(const RecordedScan& recorded) {
   }
 }
 
-/// How many scans the log gives; none when it is refused.
+/// Returns the number of scans of the log; none if it is refused.
 template <typename Log>
 std::optional<std::size_t> read_all(const std::filesystem::path& file, bool skip_invalid) {
   io::ScanLogOptions options;
@@ -53,7 +53,7 @@ std::optional<std::size_t> read_all(const std::filesystem::path& file, bool skip
   return count;
 }
 
-/// What is read without complaint is read the same when bad lines are skipped.
+/// Checks that skipping of invalid lines does not change the result of a log without such lines.
 template <typename Log>
 void check_log(const MemoryFile& file) {
   const std::optional<std::size_t> strict = read_all<Log>(file.path(), false),

@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 /// Rollers on joints around the hub of a wheel, whose axle is y.
 struct Rollers {
   int count = 8;
-  double distance_m = 0.08;  ///< of their axes from the axle
+  double distance_m = 0.08;  ///< distance of the roller axes from the axle
   double radius_m = 0.02;
   double length_m = 0.05;
   std::string motor = "";  ///< content of the joints

@@ -28,7 +28,7 @@ inline void expect_same(const std::vector<ScannerPoint>& a, const std::vector<Sc
   }
 }
 
-/// What `load` says of a file with this content, without its folder.
+/// Error message of `load` for a file with this content, without its folder.
 template <typename Load>
 std::string complaint(const char* name, const std::string& content, Load load) {
   const test::TemporaryFolder folder;

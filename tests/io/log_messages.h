@@ -10,7 +10,7 @@
 #include "io/ros/ros_definitions.h"
 #include "io/ros/ros_messages.h"
 
-/// What other people's robots record, and the MCAP file that they record it in.
+/// Messages that robots of other makers record, and the MCAP file that they are recorded in.
 namespace patrol::test {
 
 inline io::FrameTransform placed(const std::string& parent, const std::string& child, const Pose3& T_parent_child,

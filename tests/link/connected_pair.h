@@ -20,7 +20,7 @@ inline std::pair<link::Socket, link::Socket> connected_pair() {
 /// Clock of a wait (link::WaitLimit) that advances only as the test says.
 struct HandClock {
   std::chrono::steady_clock::time_point now{};
-  std::chrono::steady_clock::duration step{};  ///< by which each reading advances it
+  std::chrono::steady_clock::duration step{};  ///< time by which each reading advances the clock
   auto reader() {
     return [this] { return now += step; };
   }

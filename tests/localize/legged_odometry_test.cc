@@ -17,7 +17,7 @@ using test::stand_then_walk;
 using test::WalkingRobot;
 using test::WalkingRobotSettings;
 
-/// Which messages get through at a time.
+/// Messages that are delivered at a time.
 struct Channels {
   bool imu = true, joints = true, contacts = true;
 };

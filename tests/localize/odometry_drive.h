@@ -10,7 +10,7 @@
 
 namespace patrol::localize {
 
-/// Which messages get through at a time.
+/// Messages that are delivered at a time.
 struct Channels {
   bool imu = true, ticks = true;
 };

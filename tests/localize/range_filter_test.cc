@@ -29,10 +29,10 @@ constexpr double kStartStd_m = 0.02, kStartStd_rad = 0.01;
 struct TunnelRun {
   double max_error_m = 0.0;
   double max_odometry_error_m = 0.0;
-  double mean_nees = 0.0;  ///< of x, y, yaw, once a second
+  double mean_nees = 0.0;  ///< mean NEES of x, y, yaw, sampled every second
   double end_nees = 0.0;
   double end_error_m = 0.0;
-  double nis_sum = 0.0;  ///< of the clear ranges
+  double nis_sum = 0.0;  ///< sum of the NIS of the LOS ranges
   int num_los = 0, num_nlos = 0, num_nlos_accepted = 0, num_los_refused = 0;
   std::uint64_t num_resets = 0;
 };

@@ -49,7 +49,7 @@ inline RobotDescription make_cart() {
   return robot;
 }
 
-/// Between the robot's outline and the nearest wall; 0 if they cross.
+/// Distance between the robot's outline and the nearest wall; 0 if they cross.
 inline double gap_m(const test::RoomWorld& world, const RobotDescription& robot, const Pose2& T_map_body) {
   const auto cross = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
   const auto to_segment = [](const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -90,7 +90,7 @@ inline OccupancyGrid draw_map(const test::RoomWorld& world, double x_min, double
   return map;
 }
 
-/// How a drive went.
+/// Result of a drive.
 struct DriveRecord {
   NavigationStatus end = NavigationStatus::kIdle;
   double time_s = 0.0;
@@ -107,7 +107,7 @@ struct DriveRecord {
   std::vector<Eigen::Vector2d> way;  ///< [tick], in map
 };
 
-/// What stands where at a time.
+/// World at a time.
 using WorldAt = std::function<test::RoomWorld(double time_s)>;
 
 /// Closed loop: the navigator steps at 20 Hz and sees an ideal scan at 10 Hz, until it arrives, gives up or

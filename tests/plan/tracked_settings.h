@@ -4,7 +4,7 @@
 
 namespace patrol::plan {
 
-/// What a robot of 1.0 by 0.7 m on tracks needs other than the quadruped.
+/// Settings of a robot of 1.0 by 0.7 m on tracks that differ from those of the quadruped.
 inline NavigatorSettings make_tracked_settings() {
   NavigatorSettings settings;
   settings.kinematics = "differential";

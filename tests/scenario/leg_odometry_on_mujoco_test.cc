@@ -38,7 +38,7 @@ struct OdometryReport {
   double end_error_m = 0.0;
   double max_yaw_error_rad = 0.0;
   double tilt_rms_rad = 0.0;
-  double height_rms_m = 0.0;  ///< of the height above ground
+  double height_rms_m = 0.0;  ///< RMS error of the height above ground
   double velocity_rms_mps = 0.0;
 };
 

@@ -65,7 +65,7 @@ double turned_over_kinematic(const DriveReport& turn) {
 /// gauge say.
 struct ScrubTurn {
   double ratio;           ///< true over kinematic yaw
-  double sum_of_cosines;  ///< of the angle between each wheel's friction and x
+  double sum_of_cosines;  ///< sum of the cosines of the angles between each wheel's friction and x
 };
 ScrubTurn closed_form() {
   const std::vector<double> wheels_m = {-0.30, -0.15, 0.0, 0.15, 0.30};

@@ -38,7 +38,7 @@ struct Traffic : SmallWorld {
     const mjtNum* q = data->mocap_quat + 4 * model->body_mocapid[mj_name2id(model.get(), mjOBJ_BODY, name)];
     return {q[0], q[1], q[2], q[3]};
   }
-  /// Of the shank's lower end.
+  /// Position of the lower end of a shank.
   Eigen::Vector3d foot(const char* shank) const {
     return place_of(shank) + rotation_of(shank) * Eigen::Vector3d(0, 0, -0.43);
   }

@@ -49,7 +49,7 @@ double mujoco_range(const mjModel& model, const mjData& data, const Eigen::Vecto
 struct Agreement {
   int hits = 0;
   int beyond_1_mm = 0;     ///< rays whose ranges differ by more
-  int unexplained = 0;     ///< of those, the ones that MuJoCo's ray a tenth of a millimetre beside does not give either
+  int unexplained = 0;     ///< rays beyond 1 mm that MuJoCo does not reproduce 0.1 mm beside them either
   int other_geom = 0;      ///< ranges agree, but another geom is named
   double largest_m = 0.0;  ///< among those that agree
 };

@@ -57,7 +57,7 @@ std::string read(const std::string& path) {
   return text.str();
 }
 
-/// What the call throws, as text.
+/// Text of the error that the call throws.
 template <typename Call>
 std::string error_text(Call call) {
   try {

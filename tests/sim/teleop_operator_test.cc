@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kTick_s = 0.02;
 
-/// What came of a drive of a robot that does at once what it is told.
+/// Result of a drive of a robot that executes commands at once.
 struct Driven {
   std::vector<Pose2> marks;
   std::optional<Time> handed_over;
   Pose2 T_world_body;
-  double nearest_m = 1e9;   ///< that it came to `p_watched`
+  double nearest_m = 1e9;   ///< minimum distance from `p_watched`
   double way_back_m = 0.0;  ///< driven in reverse
 };
 

@@ -16,7 +16,7 @@ PoseGaussian belief(const Pose2& mean, double std_m, double std_rad) {
   return {.mean = mean, .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
 }
 
-/// What would be read at a pose, without noise.
+/// Range at a pose, without noise.
 RangeMeasurement measurement_at(const Pose2& T_map_body, const Pose2& T_odom_body) {
   return {.anchor = kAnchor,
           .range_m = predict_uwb_range(kAnchor, T_map_body, kAntenna, {}).range_m,

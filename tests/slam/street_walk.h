@@ -73,7 +73,7 @@ inline RoomWorld make_traffic(double t_s) {
   return traffic;
 }
 
-/// What a walk gives the filter, and the truth, all joined at the start.
+/// Input of the filter from a walk, and the ground truth; all of them aligned at the start.
 struct WalkStep {
   Time stamp{};
   Pose2 T_world_body;

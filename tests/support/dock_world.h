@@ -27,7 +27,7 @@ inline RoomWorld make_dock_world(const Pose2& T_world_docked, const std::vector<
   return world;
 }
 
-/// What a lidar 0.12 m ahead of the body sees.
+/// Scan of a lidar 0.12 m ahead of the body.
 inline LevelScan scan_from_mast(const RoomWorld& world, const Pose2& T_world_body, Time stamp, double range_std_m,
                                 const RandomStream& noise, std::uint64_t tick) {
   const Pose2 T_level_lidar{0.12, 0.0, 0.0};

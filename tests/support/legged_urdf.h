@@ -13,7 +13,7 @@ namespace patrol::test {
 /// down at zero.
 struct UrdfLegFrame {
   Eigen::Quaterniond R_plain_joint = Eigen::Quaterniond::Identity();
-  double sign = 1.0;      ///< of the angle
+  double sign = 1.0;      ///< sign of the angle
   double zero_rad = 0.0;  ///< plain angle at angle 0
 };
 

@@ -34,7 +34,7 @@ struct LinedTunnel {
                       .ring_length_m = 2.0,
                       .rings = 50};
   std::vector<Box> boxes;
-  double begin_m = -30.0, end_m = 160.0;  ///< of the walls across
+  double begin_m = -30.0, end_m = 160.0;  ///< ends of the tunnel, closed by walls
   std::function<double(int ring, double clock_deg)> inward_m = [](int, double) { return 0.0; };
 
   /// Boxes beside the wall as they stand in a tunnel: cabinets every 10 m on the right, signs every 14 m on the left, a
@@ -54,7 +54,7 @@ struct LinedTunnel {
     return *this;
   }
 
-  /// From a point towards a unit direction, infinity where nothing is within 60 m.
+  /// Distance from a point along a unit direction; infinity without a surface within 60 m.
   double range_m(const Eigen::Vector3d& from, const Eigen::Vector3d& towards) const {
     double range = 60.0;
     const auto take = [&](double t) {
@@ -81,7 +81,7 @@ struct LinedTunnel {
     double end_m = 35.0;
   };
 
-  /// In `scanner_level`; a pose that is not level is the compensator's error.
+  /// Scan in `scanner_level`; a pose that is not level is the compensator's error.
   PanoramicScan scan(const Pose3& T_route_scanner, const ScanOptions& options, std::uint64_t seed) const {
     const RandomStream noise(seed, "test/scanner");
     PanoramicScan scan;
@@ -107,14 +107,14 @@ struct LinedTunnel {
             std::sin(elevation_rad)};
   }
 
-  /// How far inside the lining a point is, radially.
+  /// Radial distance of a point inside the lining.
   double inside_m(const Eigen::Vector3d& p) const {
     const TunnelCoordinates place = lining.to_tunnel_coordinates(p);
     const double clock_deg = lining.clock_deg(place);
     return lining.radius_at(clock_deg) - inward_m(lining.ring_at(place.chainage_m), clock_deg) -
            std::hypot(place.left_m, place.height_m - lining.crown_center_m);
   }
-  /// In steps of about the way to the wall, then by secants about it (Illinois rule).
+  /// Range of the lining, by steps of about the distance to the wall, then by secants (Illinois rule).
   double lining_range_m(const Eigen::Vector3d& from, const Eigen::Vector3d& towards, double limit_m) const {
     double t = 0.0, before = 0.0, inside = inside_m(from), inside_before = inside;
     for (; t < limit_m && inside >= 1e-5; inside = inside_m(from + t * towards)) {

@@ -17,7 +17,7 @@ struct LiningStation {
   TunnelLining design_in_map;
   inspect::LiningReference reference;
   PanoramicScan scan;
-  Pose3 T_map_scanner;        ///< of the scan, true against the reference
+  Pose3 T_map_scanner;        ///< ground truth pose of the scan relative to the reference
   Pose3 T_map_scanner_guess;  ///< 0.1 m and 1 degree off, one standard deviation, and 3 cm in height
 };
 

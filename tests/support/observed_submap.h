@@ -16,7 +16,7 @@ struct SeenSubmap {
   std::vector<Eigen::Vector2d> points;  ///< means of the surface cells
 };
 
-/// From scans of 20 m range and 1 cm of noise at poses in the world; `seed` says which noise.
+/// Submap from scans of 20 m range and 1 cm of noise at poses in the world. `seed`: seed of the noise.
 inline SeenSubmap see_submap(const RoomWorld& world, const Pose2& T_world_submap,
                              const std::vector<Pose2>& T_world_body, std::uint64_t seed) {
   SeenSubmap submap;

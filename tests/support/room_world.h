@@ -93,7 +93,7 @@ class RoomWorld {
   struct ScanOptions {
     int beams = 1600;
     double range_max_m = 30.0;
-    double no_return_clearing_range_m = 6.0;  ///< as far as a beam without echo is taken to be free
+    double no_return_clearing_range_m = 6.0;  ///< range up to which a beam without return is taken to be free
     double range_std_m = 0.0;
   };
 
@@ -112,7 +112,7 @@ class RoomWorld {
     }
     return scan;
   }
-  /// Without noise.
+  /// Scan without noise.
   LevelScan scan(const Pose2& T_world_body, const ScanOptions& options) const {
     return scan(T_world_body, Time{}, options, RandomStream(0, "no noise"), 0);
   }

@@ -24,10 +24,10 @@ inline constexpr Pose2 kStreetStart{11.0, 8.0, 1.5707963267948966};
 
 /// A world with the contact options of the street and what is given of scenery.
 std::string make_world(const std::string& geoms);
-/// The same with flat ground under everything.
+/// World of `make_world` with flat ground under everything.
 std::string make_flat_world(const std::string& geoms = "");
 
-/// How a walk went, by the simulator's truth.
+/// Result of a walk, by ground truth.
 struct WalkReport {
   Pose2 moved;                    ///< end in the start's frame; the yaw is unwrapped
   double mean_forward_mps = 0.0;  ///< in level
@@ -35,8 +35,8 @@ struct WalkReport {
   double mean_yaw_rate_radps = 0.0;
   double roll_rms_rad = 0.0;  ///< about the mean
   double pitch_rms_rad = 0.0;
-  double max_tilt_rad = 0.0;  ///< of the trunk's z axis
-  double min_height_m = 0.0;  ///< of the trunk's origin, in world
+  double max_tilt_rad = 0.0;  ///< maximum tilt of the trunk's z axis
+  double min_height_m = 0.0;  ///< minimum height of the trunk's origin, in world
   double slip_mps = 0.0;      ///< mean speed of a loaded foot's sole along the ground
   double max_torque_nm = 0.0;
   double velocity_error_mps = 0.0;  ///< RMS of the controller's own velocity, in level

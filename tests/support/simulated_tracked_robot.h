@@ -21,13 +21,13 @@ inline const std::string kTrackedUrdf = PATROL_SOURCE_DIR "/models/tracked/track
 /// The robot of the URDF, so that a test can change its limits.
 RobotDescription tracked_description();
 
-/// How a drive went, by the simulator's truth and by the robot's own counters.
+/// Result of a drive, by ground truth and by the robot's own counters.
 struct DriveReport {
   Pose2 moved;  ///< end in the start's frame; the yaw is unwrapped
   double climbed_m = 0.0;
-  double left_belt_m = 0.0;  ///< by ticks
+  double left_belt_m = 0.0;  ///< travel of the left track by ticks
   double right_belt_m = 0.0;
-  double mean_left_nm = 0.0;  ///< of the motors' torques
+  double mean_left_nm = 0.0;  ///< mean torque of the left motor
   double mean_right_nm = 0.0;
   double max_tilt_rad = 0.0;
   double mean_contacts = 0.0;
@@ -50,7 +50,7 @@ class TrackedRobot {
   const mjModel& model() const { return *model_.physics; }
   const AssembledModel& assembled() const { return model_; }
   mjOption& options() { return model_.physics->opt; }
-  /// What the robot presses on a geom with, N.
+  /// Force of the robot on a geom, N.
   double force_on_n(const std::string& geom) const;
   mjData& data() { return *data_; }
   const TrackTicks& ticks() const { return ticks_; }

@@ -23,8 +23,8 @@ struct WheelReport {
   double left_m = 0.0;  ///< mean travel of the driven wheels of a side by their joints and nominal radii
   double right_m = 0.0;
   double max_tilt_rad = 0.0;
-  double max_abs_torque_nm = 0.0;  ///< of any motor
-  double mean_torque_nm = 0.0;     ///< of all motors whose axes point to the left
+  double max_abs_torque_nm = 0.0;  ///< maximum torque of any motor
+  double mean_torque_nm = 0.0;     ///< mean torque of all motors whose axes point to the left
 };
 
 /// A wheeled robot of a URDF file in a world of its own, with its firmware and noisy IMU.

@@ -13,13 +13,12 @@
 
 namespace patrol::test {
 
-/// Which part of a world a submap holds.
+/// Selects the part of a world that a submap contains.
 using Keep = std::function<bool(const Eigen::Vector2d& p_world)>;
 
 struct WallSampling {
   double spacing_m = 0.1;
-  double phase =
-      0.0;  ///< of the first point on a wall, in spacings: two submaps' points are never the same pieces of wall
+  double phase = 0.0;  ///< phase of the first point on a wall, in spacings, so that two submaps have different points
   double std_m = 0.0;
   std::uint64_t seed = 1;
 };

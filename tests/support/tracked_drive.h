@@ -37,10 +37,10 @@ struct TrackedDriveSettings {
   double max_belt_acceleration_mps2 = 1.0;
   double ticks_per_sprocket_turn = 720.0;
   // Ground.
-  double scale = 0.01;           ///< of both belts, constant
-  double slip = 0.02;            ///< of each belt, share of its way, wanders
-  double slip_per_radps = 0.07;  ///< more of it on turns,
-  double slip_per_tilt = 0.14;   ///< and on slopes, by the sine of the tilt
+  double scale = 0.01;           ///< scale error of both tracks, constant
+  double slip = 0.02;            ///< slip of each track, fraction of its distance; wanders
+  double slip_per_radps = 0.07;  ///< additional slip in turns, per rad/s
+  double slip_per_tilt = 0.14;   ///< additional slip on slopes, per sine of the tilt
   double slip_length_m = 3.0;
   double crab = 0.005;      ///< sideways, share of the way; wanders over the same length
   double turn_ratio = 1.5;  ///< mean: distance of the tracks' centers of rotation over the gauge
@@ -50,7 +50,7 @@ struct TrackedDriveSettings {
   double turn_length_rad = 2.0;
   double pitch_rad = 0.03;  ///< amplitude of the ground's waves
   double roll_rad = 0.02;
-  double vibration_mps2_rthz = 0.03;                        ///< of the accelerometer while the belts run at 1 m/s
+  double vibration_mps2_rthz = 0.03;  ///< noise of the accelerometer while the tracks run at 1 m/s
   std::function<double(double time_s)> friction = nullptr;  ///< coefficient; 0.8 if none
   // IMU: the defaults of sim/sensors/imu.h, sampled every other tick of 2 ms.
   double gyro_noise_radps = 2.3e-4 / 0.0447213595;
@@ -121,7 +121,7 @@ class TrackedDrive {
   std::int64_t steps_per_ticks_;
 
   std::int64_t imu_steps_ = 0;
-  Belts contact_;                                         ///< as they run
+  Belts contact_;                                         ///< present speeds of the tracks
   Eigen::Vector2d belt_way_m_ = Eigen::Vector2d::Zero();  ///< left, right
   double scale_;
   Wanderer slip_left_, slip_right_, crab_, turn_ratio_, turn_x_, turn_y_;
@@ -130,7 +130,7 @@ class TrackedDrive {
   double yaw_rad_ = 0.0;
   Eigen::Vector3d p_ground_ = Eigen::Vector3d::Zero();
   Pose3 T_world_body_;
-  Eigen::Vector3d v_world_ = Eigen::Vector3d::Zero();  ///< of the IMU
+  Eigen::Vector3d v_world_ = Eigen::Vector3d::Zero();  ///< velocity of the IMU in world
   Eigen::Matrix3d gyro_distortion_, accel_distortion_;
   Eigen::Vector3d gyro_bias_, accel_bias_;
   Imu imu_;

@@ -81,10 +81,10 @@ inline const OccupancyGrid& tunnel_map() {
 
 struct DriveSettings {
   double speed_mps = 1.0;
-  double way_scale_error = 0.0;    ///< odometry's way is this much longer than the true one
-  double step_std_m_per_m = 0.01;  ///< and errs anew in every step
+  double way_scale_error = 0.0;    ///< relative error of the distance by odometry; positive: too long
+  double step_std_m_per_m = 0.01;  ///< standard deviation of odometry, independent in every step
   double yaw_std_rad_per_m = 0.002;
-  double range_std_m = 0.08;  ///< of UWB
+  double range_std_m = 0.08;  ///< standard deviation of UWB ranges
   double range_reach_m = 35.0;
 };
 

@@ -34,7 +34,7 @@ struct WalkingRobotSettings {
   double roll_wobble_rad = 0.02;
   double pitch_wobble_rad = 0.03;
   double height_wobble_m = 0.004;
-  double slope_rad = 0.0;  ///< of the trunk, nose down; the ground is flat
+  double slope_rad = 0.0;  ///< slope of the trunk, nose down; the ground is flat
 
   double gyro_noise_radps_per_sqrt_hz = 2e-4;
   double accel_noise_mps2_per_sqrt_hz = 3e-3;
@@ -73,7 +73,7 @@ class WalkingRobot {
   struct Leg {
     Eigen::Vector3d angle_rad, speed_radps;
     bool is_standing = true;
-    Eigen::Vector3d lift_off, center;  ///< of the foot, in world
+    Eigen::Vector3d lift_off, center;  ///< positions of the foot, in world
   };
   void substep();
   void place_trunk();
@@ -89,7 +89,7 @@ class WalkingRobot {
 
   std::int64_t tick_ = 0;  ///< sensor periods
   double time_s_ = 0.0;
-  double cycle_ = 0.0;  ///< of the gait; 0 while it stands
+  double cycle_ = 0.0;  ///< number of gait cycles; 0 while the robot is stationary
   double yaw_rad_ = 0.0;
   Eigen::Vector2d position_m_ = Eigen::Vector2d::Zero();
   double way_m_ = 0.0;

@@ -20,7 +20,7 @@ class ProblemFile : public ::testing::Test {
     settings.planner = planner;
     return solve_problems(folder / "a.map.scen", settings).value();
   }
-  /// Without the folder's name.
+  /// Error message without the name of the folder.
   std::string complaint(const std::string& problems) {
     try {
       solve(problems, "astar");

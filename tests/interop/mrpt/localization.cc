@@ -16,7 +16,7 @@ namespace {
 using mrpt::maps::COccupancyGridMap2D;
 
 constexpr std::size_t kParticles = 600;
-constexpr double kMinTravel_m = 0.1, kMinTurn_rad = 0.05;  ///< between two updates by a scan
+constexpr double kMinTravel_m = 0.1, kMinTurn_rad = 0.05;  ///< minimum motion between two updates by a scan
 
 COccupancyGridMap2D::Ptr grid_of(const patrol::OccupancyGrid& map) {
   const patrol::GridGeometry& geometry = map.geometry();

@@ -8,7 +8,7 @@ namespace {
 constexpr double kDepthRange_m = 2.5, kMinHeight_m = 0.06, kMaxHeight_m = 0.5;
 constexpr double kCell_m = 0.05;
 constexpr Time kMemory = std::chrono::seconds(12);
-constexpr int kMinPoints = 2;  ///< of an image in a cell
+constexpr int kMinPoints = 2;  ///< minimum number of points of an image in a cell
 
 }  // namespace
 

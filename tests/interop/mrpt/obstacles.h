@@ -27,7 +27,7 @@ class LowObstacles {
  private:
   patrol::Pose3 T_body_camera_;
   double ground_m_;
-  std::map<std::pair<int, int>, Time> last_seen_;  ///< by cell in odom
+  std::map<std::pair<int, int>, Time> last_seen_;  ///< time of the last point by cell, in odom
 };
 
 }  // namespace mrpt_stack

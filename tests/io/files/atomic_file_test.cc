@@ -30,7 +30,7 @@ TEST(SaveText, ReplacesTheFileAndLeavesNothingBeside) {
   EXPECT_EQ(num_files(folder.path()), 1U);
 }
 
-/// Where the new file grows.
+/// Path of the new file while it is written.
 std::filesystem::path part_of(const std::filesystem::path& file) {
   return file.string() + "." + std::to_string(::getpid()) + ".part";
 }

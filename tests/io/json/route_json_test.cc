@@ -39,7 +39,7 @@ std::string complaint_about_text(const std::string& text) {
   return "";
 }
 
-/// What is said of the good route after a change.
+/// Error message of the valid route after a change.
 std::string complaint_after(const std::function<void(Json&)>& change) {
   Json route = make_route();
   change(route);

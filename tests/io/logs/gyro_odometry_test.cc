@@ -17,7 +17,7 @@ struct Drive {
   double slope = 1.0;  ///< odometry's turn over the true one
   double gyro_factor = 1.0;
   double stationary_s = 5.0;  ///< at the start
-  bool has_gap = false;       ///< of the gyro, from 20 s to 22 s
+  bool has_gap = false;       ///< whether the gyro has a gap from 20 s to 22 s
 };
 
 /// 60 s at 0.5 m/s, turning by 0.5 sin(t) rad/s: the gyro 100 times a second, a scan every 0.2 s. Gives what is made of

@@ -26,7 +26,7 @@ class MovingAi : public ::testing::Test {
     write_bytes(folder / "a.map.scen", text);
     return load_moving_ai_problems(folder / "a.map.scen");
   }
-  /// Without the folder's name.
+  /// Error message without the name of the folder.
   template <typename Load>
   std::string complaint(Load load) {
     try {

@@ -30,7 +30,7 @@ Tour nearly_started(std::uint64_t seed) {
   return tour;
 }
 
-/// What 20 drives from the portal through the lined stretch have shown.
+/// Results of 20 drives from the portal through the lined segment.
 struct LinedStudy {
   int trust_fell_late = 0;  ///< drives on which the error passed 0.5 m while trust was still 0.5 or more
   int drifted = 0;          ///< drives on which it passed 0.5 m at all

@@ -16,7 +16,7 @@ struct Spread {
   double along_std, scale_std;
 };
 
-/// After `steps` steps of 0.2 m along x from one place.
+/// Spread after `steps` steps of 0.2 m along x from one pose.
 Spread spread_after(int steps, const OdometryModelSettings& settings) {
   const RandomStream noise(1, "test/motion"), start(2, "test/start");
   ParticleCloud cloud;

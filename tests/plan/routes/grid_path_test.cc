@@ -74,7 +74,7 @@ TEST(GridPathBuilder, SplicesLoops) {
   EXPECT_NEAR(path_cost(graph, path), 3.0, kExactTol);
 }
 
-/// By chance, without a cell twice.
+/// Random path without a repeated cell.
 GridPath random_path(GridPathBuilder& path_builder, std::uint32_t from, std::uint32_t to, std::uint64_t seed) {
   RandomSequence random(RandomStream(seed, "test/walk"), 0);
   return path_builder.build(from, to, [&](std::uint32_t, unsigned open) {

@@ -31,7 +31,7 @@ std::unique_ptr<RoutePlanner> make(const std::string& name, double cost_weight =
 
 class EveryPlanner : public ::testing::TestWithParam<std::string> {
  protected:
-  /// What it says where there is no way.
+  /// Status of the planner if no path exists.
   PlanStatus none() const { return planner->is_complete() ? PlanStatus::kNoRoute : PlanStatus::kNotFound; }
 
   std::unique_ptr<RoutePlanner> planner = make(GetParam());

@@ -74,7 +74,7 @@ double soonest_slowly(const TourProblem& problem) {
   return soonest;
 }
 
-/// Of seven stations: any of the ends fixed or free, priorities, windows, service.
+/// Problem of seven stations: ends fixed or free, priorities, time windows, service times.
 TourProblem constrained_problem(std::uint64_t seed) {
   const RandomStream stream(seed, "test/constraints");
   TourProblem problem = random_problem(seed, 7, seed % 2 == 0);

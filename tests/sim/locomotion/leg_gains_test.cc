@@ -193,7 +193,7 @@ TEST_P(Walkers, StandForFiveSecondsWithin2CentimetersAnd2Degrees) {
 TEST_P(Walkers, WalkAndTurnWithin10PercentAndKeepTheTrunkWithin9Degrees) {
   const LocomotionSettings limits = settings();
   struct Command {
-    double forward, sideways, turn;  ///< of the maximum
+    double forward, sideways, turn;  ///< fractions of the maximum
   };
   for (const auto [forward, sideways, turn] :
        {Command{0.8, 0, 0}, {-0.8, 0, 0}, {0, 0.8, 0}, {0, 0, 0.8}, {0.6, 0, 0.5}}) {

@@ -26,7 +26,7 @@ ImuSettings ideal() {
   return settings;
 }
 
-/// What a sensor at rest says on one axis of the gyroscope and of the accelerometer, tick by tick.
+/// Readings of a sensor at rest on one axis of the gyroscope and of the accelerometer, [tick].
 struct Record {
   std::vector<double> gyro, accel;
 };

@@ -71,7 +71,7 @@ TEST(Tem, TwoBodiesAddUp) {
 
 constexpr int kDraws = 4000;
 
-/// Of a gate over many soundings.
+/// Moments of a gate over many soundings.
 test::Moments moments_of(const TemSettings& settings, std::size_t gate) {
   const Tem tem(settings, kRock, {}, 3);
   test::Moments moments;

@@ -19,7 +19,7 @@ Vector6 vector_of(const Calibration& c) {
   return {c.lidar_x_m, c.lidar_y_m, c.lidar_yaw_rad, c.distance_scale, c.rotation_scale, c.steering_bias_rad_per_m};
 }
 
-/// In standard deviations.
+/// Errors in standard deviations.
 Vector6 normalized_errors(const CalibrationResult& result, const Calibration& truth) {
   Vector6 errors = vector_of(result.calibration()) - vector_of(truth);
   for (std::size_t i = 0; i < 6; ++i) errors[static_cast<Eigen::Index>(i)] /= result.parameters[i].std;

@@ -21,7 +21,7 @@ inline const slam::Calibration kWorn{.override_lidar_pose = true,
                                      .rotation_scale = 0.9,
                                      .steering_bias_rad_per_m = 0.02};
 
-/// What wheels that are so worn report of a true step: the equations of Calibration, solved for odometry.
+/// Odometry of worn wheels for a true step: the equations of Calibration, solved for odometry.
 inline Pose2 reported(const Pose2& step, const slam::Calibration& worn) {
   const Eigen::Vector2d m = Eigen::Rotation2Dd(-0.5 * step.yaw) * step.position() / worn.distance_scale;
   const double turn_rad = (step.yaw - worn.steering_bias_rad_per_m * m.x()) / worn.rotation_scale;
@@ -30,8 +30,8 @@ inline Pose2 reported(const Pose2& step, const slam::Calibration& worn) {
 }
 
 struct Noise {
-  double odometry_m = 0.0, odometry_rad = 0.0;  ///< of each step, standard deviation
-  double lidar_m = 0.0, lidar_rad = 0.0;        ///< of each place of the lidar
+  double odometry_m = 0.0, odometry_rad = 0.0;  ///< standard deviations of each step
+  double lidar_m = 0.0, lidar_rad = 0.0;        ///< standard deviations of each pose of the lidar
 };
 
 /// Stretches of `steps_per_stretch` true steps of the body, as a worn robot records them.

@@ -11,7 +11,7 @@
 namespace patrol::slam::motion_segments_test {
 namespace {
 
-/// What a lidar sees in a world of walls, all round.
+/// Scan of a lidar in a world of walls.
 LaserScan scan_from(const test::RoomWorld& world, const Pose2& T_world_lidar, Time stamp, const RandomStream& noise,
                     std::uint64_t tick) {
   LaserScan scan{.stamp = stamp,

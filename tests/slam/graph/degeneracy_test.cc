@@ -7,7 +7,7 @@
 namespace patrol::slam::degeneracy_test {
 namespace {
 
-/// Of points on a wall: each tells the distance to it.
+/// Information of points on a wall: each constrains the distance to it.
 Eigen::Matrix3d wall(double normal_rad, const Eigen::Vector2d& center, int count) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   const Eigen::Vector2d n(std::cos(normal_rad), std::sin(normal_rad));

@@ -20,9 +20,9 @@ Pose2 pose_at(double seconds) {
 
 struct Log {
   double period_s = 0.2;
-  double scan_delay_s = 0.0;       ///< of the stamps of the scans
-  double tracked_std_rad = 0.001;  ///< of the tracked yaw
-  double odometry_std_rad = 0.0;   ///< of the yaw of odometry, independent from scan to scan
+  double scan_delay_s = 0.0;       ///< delay of the stamps of the scans
+  double tracked_std_rad = 0.001;  ///< standard deviation of the tracked yaw
+  double odometry_std_rad = 0.0;   ///< standard deviation of the yaw of odometry, independent from scan to scan
   std::uint64_t seed = 1;
 };
 

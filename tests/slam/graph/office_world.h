@@ -88,11 +88,11 @@ struct DriveOptions {
   double speed_mps = 0.6;
   double turn_radps = 0.6;
   double period_s = 0.2;
-  double odometry_scale = 0.03;  ///< of the way, too much
+  double odometry_scale = 0.03;  ///< relative error of the distance by odometry; positive: too long
   double odometry_drift_rad_per_m = 0.01;
 };
 
-/// From corner to corner, turning on the spot at each. Odometry begins at zero.
+/// Drive from corner to corner with a turn in place at each. Odometry begins at zero.
 inline std::vector<DriveStep> drive_along(const std::vector<Eigen::Vector2d>& corners, const DriveOptions& options) {
   std::vector<Pose2> poses;
   Pose2 pose{corners[0].x(), corners[0].y(),
@@ -138,7 +138,7 @@ inline std::vector<Eigen::Vector2d> office_rounds(int rounds) {
   return corners;
 }
 
-/// As old laser scanners saw: a beam a degree, centimeter noise.
+/// Options of an old laser scanner: one beam per degree, noise of 1 cm.
 inline constexpr RoomWorld::ScanOptions kOldLidar{
     .beams = 360, .range_max_m = 30.0, .no_return_clearing_range_m = 6.0, .range_std_m = 0.01};
 

@@ -16,7 +16,7 @@ PoseGaussian around(const Pose2& mean, double std_m, double std_rad) {
   return {.mean = mean, .covariance = Eigen::Vector3d(std_m * std_m, std_m * std_m, std_rad * std_rad).asDiagonal()};
 }
 
-const Pose2 kThere{8.0, 4.2, 0.0};               ///< where the first way begins, looking along x
+const Pose2 kThere{8.0, 4.2, 0.0};               ///< start of the first path, which runs along x
 const Pose2 kBack{17.0, 4.3, std::numbers::pi};  ///< the second comes back
 const Pose2 kTruth = kThere.inverse() * kBack;
 

@@ -21,7 +21,7 @@ GridSlamSettings with_particles(int particles) {
   return settings;
 }
 
-/// What a walk through the street came to. Errors against the truth, joined at the start.
+/// Result of a walk through the street. Errors against the ground truth, aligned at the start.
 struct Outcome {
   double end_error_m = 0.0;
   double odometry_end_error_m = 0.0;

@@ -9,7 +9,7 @@
 namespace patrol::slam::submap_constraint_finder_test {
 namespace {
 
-/// What is seen on 8 m along a corridor from (x, y) on; in the frame of the first scan.
+/// Surfaces observed on 8 m along a corridor from (x, y) on, in the frame of the first scan.
 SubmapSurfaces seen_from(const test::RoomWorld& world, double x, double y, std::uint64_t seed) {
   const RandomStream noise(seed, "test/joiner");
   const Pose2 T_world_first{x, y, 0.0};

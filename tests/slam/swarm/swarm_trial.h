@@ -79,7 +79,7 @@ double worst_distance(const SwarmOptimizer& optimizer, Function function) {
   return worst;
 }
 
-/// In how many of the seeds 1 to 10 the best of 20 members ends within `tol` of the optimum.
+/// Returns the number of the seeds 1 to 10 with which the best of 20 members ends within `tol` of the optimum.
 template <typename Function>
 int successes(const SwarmOptimizer& optimizer, Function function, double tol) {
   int count = 0;

@@ -90,7 +90,7 @@ class GasRound {
   Task task_;
 };
 
-/// What the mission did.
+/// Record of the mission.
 struct MissionRecord {
   std::vector<Event> events;
   std::vector<EventKind> kinds() const {

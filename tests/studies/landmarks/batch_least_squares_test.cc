@@ -56,7 +56,7 @@ TEST(SolveBatch, RecoversTheGroundTruthFromNoiselessDataAndAGuessMetersOff) {
   }
 }
 
-/// Of 20 steps.
+/// Drive of 20 steps without noise.
 Drive noiseless(const CircleWorld& world, const Control& control) {
   Drive drive;
   Pose2 pose;

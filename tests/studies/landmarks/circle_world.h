@@ -18,11 +18,11 @@ using studies::Control, studies::ControlMotion, studies::LandmarkSlam, studies::
 struct CircleWorld {
   ControlMotion motion;  ///< its deviations are those of odometry's errors
   RangeBearingNoise noise;
-  double range_m = 6.0;  ///< to which landmarks are seen
+  double range_m = 6.0;  ///< maximum range of observed landmarks
   int num_landmarks = 8;
-  int blind_steps = 0;  ///< at first, nothing is seen
+  int blind_steps = 0;  ///< number of initial steps without observations
   Eigen::Vector2d bias =
-      Eigen::Vector2d::Zero();  ///< of odometry, in its standard deviations: as studies::OdometryBias has it
+      Eigen::Vector2d::Zero();  ///< bias of odometry, in its standard deviations, as in studies::OdometryBias
 
   /// For a circle of 5 m, the turn is length / 5 m: yaw rate v / 5, or sin G / L = 1 / 5.
   Control control() const {
@@ -35,7 +35,7 @@ struct CircleWorld {
   }
 };
 
-/// What was, and what the robot got of it.
+/// Ground truth of a drive, and the readings that the robot receives.
 struct Drive {
   std::vector<Pose2> T_map_body;                        ///< [step], after its motion
   std::vector<Control> controls;                        ///< [step], as measured
@@ -83,7 +83,7 @@ inline std::vector<Pose2> poses_of(const std::vector<studies::LandmarkSlamEstima
   return poses;
 }
 
-/// Of the positions, without alignment: the map's origin is where the robot started.
+/// RMS error of the positions, without alignment: the origin of the map is the start of the robot.
 inline double rmse_m(const std::vector<Pose2>& estimated, const std::vector<Pose2>& truth) {
   double sum = 0.0;
   for (std::size_t k = 0; k < truth.size(); ++k) sum += (estimated[k].position() - truth[k].position()).squaredNorm();

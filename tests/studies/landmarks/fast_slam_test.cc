@@ -22,7 +22,7 @@ std::vector<Pose2> path_of(const FastSlamSettings& settings, const CircleWorld& 
   return poses_of(run(slam, measured));
 }
 
-/// Of ten seeds, m.
+/// Mean RMS error of ten seeds, m.
 double mean_rmse(const FastSlamSettings& settings, const CircleWorld& world,
                  const slam::ParticleFilterSettings& parts = {}) {
   double mean = 0.0;

@@ -45,10 +45,10 @@ inline std::vector<double> errors_of(const FilterMaker& make, const GrowthModel&
 }
 
 struct MeanInterval {
-  double mean = 0.0, low = 0.0, high = 0.0;  ///< of 95 %, normal
+  double mean = 0.0, low = 0.0, high = 0.0;  ///< mean and normal 95 % confidence interval
 };
 
-/// Of a - b, paired.
+/// Mean and interval of the paired differences a - b.
 inline MeanInterval paired_difference(const std::vector<double>& a, const std::vector<double>& b) {
   const auto num = static_cast<double>(a.size());
   double mean = 0.0, squares = 0.0;

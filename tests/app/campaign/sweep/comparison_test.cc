@@ -39,7 +39,7 @@ RunVerdict row_with(double value) {
           .events = {}};
 }
 
-/// What `figure(variant, seed)` gives for every run.
+/// Rows with the value of `figure(variant, seed)` for every run.
 template <typename Figure>
 SweepRows rows_of(const SweepManifest& manifest, Figure figure) {
   SweepRows rows;

@@ -4,7 +4,7 @@
 
 namespace patrol::test {
 
-/// Of a run with one declared fault.
+/// Verdict of a run with one declared fault.
 inline app::RunVerdict fault_verdict(app::RunStatus end, bool is_completed, int collisions, bool was_triggered = true) {
   return {
       .end = end,
