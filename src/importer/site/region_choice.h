@@ -25,7 +25,7 @@ struct RegionArea {
 /// Region of a mission without a start.
 struct RegionChoice {
   std::size_t index = 0;
-  bool is_enclosed = false;  ///< region inside of walls, although a region with its margin is larger
+  bool is_enclosed = false;  ///< whether the region is inside of walls, although a region with its margin is larger
 };
 
 /// Returns the largest region; none if there are no regions. If it reaches the border of the plan, its ground has no

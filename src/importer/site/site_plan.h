@@ -25,8 +25,10 @@ struct SitePlanSettings {
 /// Floor plan of a site.
 struct SitePlan {
   OccupancyGrid map;
-  bool is_enclosed = false;    ///< map of ground inside of walls: the ground outside is larger with its margin only
-  bool is_too_narrow = false;  ///< map of ground outside of walls: that inside of them is too narrow for the robot
+  /// Whether the map is of ground inside of walls: the ground outside is larger with its margin only.
+  bool is_enclosed = false;
+  /// Whether the map is of ground outside of walls: that inside of them is too narrow for the robot.
+  bool is_too_narrow = false;
 };
 
 /// Returns the floor plan of a site by what its lidars see: cells of the connected ground are free, cells with a

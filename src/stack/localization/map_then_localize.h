@@ -45,7 +45,7 @@ class MapThenLocalize final : public Localizer {
   std::vector<Pose2> path_of_mapping_;            ///< [scan] once the map is complete
   std::vector<slam::MappedRange> mapped_ranges_;  ///< once the map is complete
   localize::RangeBiasMap range_biases_;           ///< once the map is complete
-  std::optional<Eigen::Vector2d> p_map_body_;     ///< body at the newest scan; none without a confident pose
+  std::optional<Eigen::Vector2d> p_map_body_;     ///< position at the newest scan; none without a confident pose
 };
 
 }  // namespace patrol::stack
