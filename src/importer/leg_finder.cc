@@ -57,7 +57,7 @@ bool end_in_wheels(const SourceRobot& robot, const std::vector<FoundLeg>& legs) 
 
 /// Lengths of a chain of three joints and height of its end, with all joints at zero.
 struct ChainSize {
-  std::array<double, 3> lengths_m = {};  ///< distances of the joints, and of the last one to the end of its shapes
+  std::array<double, 3> lengths_m = {};  ///< distances between joints, and from the last one to the end of its shapes
   double lowest_m = 0.0;                 ///< in the root
 };
 

@@ -107,7 +107,7 @@ struct LinedTunnel {
             std::sin(elevation_rad)};
   }
 
-  /// Radial distance of a point inside the lining.
+  /// Radial distance from a point to the lining, positive inside of it.
   double inside_m(const Eigen::Vector3d& p) const {
     const TunnelCoordinates place = lining.to_tunnel_coordinates(p);
     const double clock_deg = lining.clock_deg(place);

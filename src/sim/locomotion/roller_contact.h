@@ -39,7 +39,7 @@ class RollerContact {
  private:
   struct Wheel {
     int carrier;             ///< body of the chassis; its y axis is the axle, to the left
-    double roller_axis_rad;  ///< angle of the roller axes as in WheelGeometry
+    double roller_axis_rad;  ///< direction of the roller axis on the ground, as in WheelGeometry
   };
   void set_friction(const mjData& data, mjContact& contact, const Wheel& wheel, bool is_first) const;
 
