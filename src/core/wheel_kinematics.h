@@ -90,8 +90,7 @@ void limit_wheel_speeds(const RobotDescription& robot, std::vector<double>& spee
 
 /// Motion of a robot by its mecanum wheels [Muir87].
 struct WheelMotion {
-  /// Velocity of the body origin: forward m/s, left m/s, yaw rate rad/s.
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< body origin: forward m/s, left m/s, yaw rate rad/s
   /// Part of the wheel speeds that no motion without slip explains, root mean square over the wheels, m/s; with the
   /// sign of its speed of the first wheel.
   double residual_mps = 0.0;

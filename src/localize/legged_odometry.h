@@ -23,9 +23,8 @@ struct EstimatorHealth {
   bool legs_timed_out = false;      ///< the estimate is propagated by the IMU alone
   bool contacts_timed_out = false;  ///< stance feet are selected by their height
   double gyro_z_bias_std_radps = 0.0;
-  /// Number of messages that are not finite, of the wrong size, frozen, or outdated.
-  std::uint64_t num_rejected_messages = 0;
-  std::uint64_t num_slips = 0;  ///< number of readings of a stance foot that slips
+  std::uint64_t num_rejected_messages = 0;  ///< messages not finite, of the wrong size, frozen, or outdated
+  std::uint64_t num_slips = 0;              ///< number of readings of a stance foot that slips
 };
 
 /// Legged odometry: pose of the trunk in `odom` from IMU, joint encoders and foot forces, at the newest reading.

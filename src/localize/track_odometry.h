@@ -25,8 +25,7 @@ struct TrackOdometryHealth {
   bool encoders_timed_out = false;  ///< the estimate is propagated by the IMU alone: no encoder reading was accepted
   bool is_slipping = false;         ///< track and body speeds disagree, or the encoders are frozen: IMU alone
   double gyro_z_bias_std_radps = 0.0;
-  /// Number of messages that are not finite, frozen, implausible, or outdated.
-  std::uint64_t num_rejected_messages = 0;
+  std::uint64_t num_rejected_messages = 0;  ///< messages not finite, frozen, implausible, or outdated
   std::uint64_t num_slip_events = 0;
 };
 

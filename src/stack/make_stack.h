@@ -17,9 +17,8 @@ namespace patrol::stack {
 
 /// Initial data of a stack besides the survey; in map unless the member says otherwise.
 struct StackStart {
-  std::optional<OccupancyGrid> map = {};  ///< none: the robot makes its own map
-  /// Registration of the given map; none: its origin is the surveyed start.
-  std::optional<SiteRegistration> map_registration = {};
+  std::optional<OccupancyGrid> map = {};                  ///< none: the robot makes its own map
+  std::optional<SiteRegistration> map_registration = {};  ///< none: the origin of the map is the surveyed start
   std::vector<SavedGoal> goals = {};  ///< none: saved during teleoperation, or the mission visits the route's stations
   LiningReferences references = {};   ///< scans of an earlier inspection run
   BoostedStumps neighbor_model = {};  ///< classifier of submap pairs, for SLAM methods that need it

@@ -60,8 +60,7 @@ ExitCode bisect_command(const BisectOptions& options);
 /// Assignment of the poses of an estimate to the stamps of a reference.
 struct AssociationOptions {
   std::optional<double> max_dt_s;  ///< default: that of RelationSettings, of a reference score::kMaxAlignedDt
-  /// X of the relations' reference point in the body frame of the trajectory; relations only.
-  double reference_x_m = 0.0;
+  double reference_x_m = 0.0;      ///< x of the reference point of relations in the body frame
 
   bool is_given() const { return max_dt_s || reference_x_m != 0.0; }
   score::RelationSettings of_relations() const {

@@ -85,8 +85,7 @@ class McapReader {
     std::vector<std::pair<Time, std::string_view>> messages;  ///< content of the records, by log time
     std::size_t next = 0;                                     ///< index of the next message
   };
-  /// Chunks by time of the next message and offset.
-  using OpenChunks = std::map<std::pair<Time, std::uint64_t>, OpenChunk>;
+  using OpenChunks = std::map<std::pair<Time, std::uint64_t>, OpenChunk>;  ///< chunks by next message: time and offset
 
   void open_by_time();
   std::optional<std::vector<ChunkEntry>> find_chunks();

@@ -40,8 +40,7 @@ class RangeFactors {
   /// Standard deviation of the mean: independent noise, and an error that all ranges near a node have in common.
   double std_m(const RangeFactor& range) const;
   double outlier_scale_sigma() const { return settings_.outlier_scale_sigma; }
-  /// Standard deviation of the prior of a delay, whose mean is zero.
-  double delay_std_m() const { return settings_.anchor_delay_std_m; }
+  double delay_std_m() const { return settings_.anchor_delay_std_m; }  ///< standard deviation of the prior; mean 0
 
   /// Estimated delay of an anchor, m; zero before the first optimization with a range to it.
   double delay_m(int anchor) const;
