@@ -20,6 +20,12 @@ std::string table_cell(const std::string& text) {
 
 }  // namespace
 
+std::string list_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
 std::string to_markdown(const std::vector<Assumption>& assumptions, const std::string& none) {
   if (assumptions.empty()) return none;
   std::string text = "| subject | assumption | overridden by |\n| --- | --- | --- |\n";

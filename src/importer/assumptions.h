@@ -12,6 +12,9 @@ struct Assumption {
   std::string override_with;  ///< element of the description, option or key that overrides it
 };
 
+/// Returns names with commas between them, for the texts of assumptions.
+std::string list_of(const std::vector<std::string>& names);
+
 /// Returns the table of assumptions as Markdown, or `none` if there are none.
 std::string to_markdown(const std::vector<Assumption>& assumptions, const std::string& none);
 

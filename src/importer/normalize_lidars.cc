@@ -1,15 +1,15 @@
+#include "importer/normalize_lidars.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <string>
 #include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "core/sensors/lidar.h"
-#include "importer/normalizer.h"
 
 namespace patrol::importer {
 namespace {
@@ -87,17 +87,16 @@ std::string reason_of(const LidarNumbers& stated) {
 
 }  // namespace
 
-/// Chooses the settings of a lidar: the preset of its field of view and range; without one, the nearest preset with the
-/// numbers of the file.
-void Normalizer::choose_lidar(const std::string& frame, const LidarNumbers& stated) {
+void choose_lidar(const std::string& frame, const LidarNumbers& stated, NormalizedRobot& robot) {
   if (!frame.starts_with("lidar")) return;
   const bool is_3d = frame == "lidar3d";
   const std::string default_preset = choose_preset({}, is_3d).name;
   const PresetChoice choice = choose_preset(stated, is_3d);
   if (choice.agrees) {
-    result_.lidars[frame] = "preset: " + choice.name;
-    assume(frame, fmt::format("is simulated as {}, by its field of view and its range", choice.name),
-           fmt::format("sensors.{}.preset in {}.yaml", frame, result_.name));
+    robot.lidars[frame] = "preset: " + choice.name;
+    robot.assumptions.push_back({frame,
+                                 fmt::format("is simulated as {}, by its field of view and its range", choice.name),
+                                 fmt::format("sensors.{}.preset in {}.yaml", frame, robot.name)});
     return;
   }
   const LidarKeys keys(choice.name);
@@ -109,14 +108,15 @@ void Normalizer::choose_lidar(const std::string& frame, const LidarNumbers& stat
     if (std::abs(value - key.value) <= kSame * std::max(1.0, std::abs(key.value))) continue;
     (allows(key.limits, value) ? settings : impossible).push_back(setting);
   }
-  assume(frame,
-         fmt::format("is simulated as {} ({:.0f} degrees, {:g} m){}: {}{}", choice.name, keys.at("fov_deg").value,
-                     keys.at("range_max_m").value,
-                     settings.empty() ? "" : " with " + list_of(settings) + " of the file", reason_of(stated),
-                     impossible.empty() ? "" : "; outside of the limits of the key: " + list_of(impossible)),
-         fmt::format("sensors.{} in {}.yaml", frame, result_.name));
+  robot.assumptions.push_back(
+      {frame,
+       fmt::format("is simulated as {} ({:.0f} degrees, {:g} m){}: {}{}", choice.name, keys.at("fov_deg").value,
+                   keys.at("range_max_m").value, settings.empty() ? "" : " with " + list_of(settings) + " of the file",
+                   reason_of(stated),
+                   impossible.empty() ? "" : "; outside of the limits of the key: " + list_of(impossible)),
+       fmt::format("sensors.{} in {}.yaml", frame, robot.name)});
   if (choice.name != default_preset || !settings.empty()) settings.insert(settings.begin(), "preset: " + choice.name);
-  if (!settings.empty()) result_.lidars[frame] = list_of(settings);
+  if (!settings.empty()) robot.lidars[frame] = list_of(settings);
 }
 
 }  // namespace patrol::importer

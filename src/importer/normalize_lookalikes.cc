@@ -1,13 +1,14 @@
+#include "importer/normalize_lookalikes.h"
+
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "importer/axial_shape.h"
-#include "importer/normalizer.h"
 
 namespace patrol::importer {
 namespace {
@@ -53,51 +54,67 @@ bool has_lookalike_across(const Lookalike& part, const std::vector<Lookalike>& a
   });
 }
 
+/// Returns the largest shape of a link that is like a wheel; none if no shape is, or if it is not on the ground.
+std::optional<Lookalike> lookalike_of(const RobotLayout& layout, const SourceLink& link) {
+  const bool has_collisions = !link.collisions.empty();
+  const std::vector<Shape>& shapes = bounding_shapes(link);
+  const Pose3 T_base_link = layout.T_base(link.name);
+  Lookalike largest{.link = &link};
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (has_collisions && layout.support_shapes.contains({link.name, i})) continue;
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3d& point : outline(shapes[i])) box.extend(T_base_link * point);
+    const double radius_m = wheel_radius_m(shapes[i], T_base_link, box.center(), layout.found.wheels.front().axis);
+    if (radius_m > largest.radius_m) largest = {.link = &link, .center_m = box.center(), .radius_m = radius_m};
+  }
+  const bool is_found = largest.radius_m > 0.0 && layout.is_near_ground(largest.center_m.z() - largest.radius_m);
+  return is_found ? std::optional(largest) : std::nullopt;
+}
+
+/// Returns the joint that should turn a link about its axle: the one above it, or the movable one above a fixed one.
+const SourceJoint* joint_of(const SourceRobot& source, const Lookalike& part) {
+  const SourceJoint* joint = source.parent_joint(part.link->name);
+  while (joint != nullptr && joint->type == JointType::kFixed) {
+    const SourceJoint* above = source.parent_joint(joint->parent);
+    if (above == nullptr || above->type == JointType::kFixed) break;
+    joint = above;
+  }
+  return joint;
+}
+
+/// Refuses a lookalike if a wheel is like it. `is_one_of_pair`: another lookalike is across, both on fixed joints.
+void refuse_if_like_wheel(const RobotLayout& layout, const Lookalike& part, const SourceJoint& joint,
+                          bool is_one_of_pair) {
+  for (const FoundWheel& wheel : layout.found.wheels) {
+    if (wheel.carrier_type == CarrierType::kCaster || wheel.is_ball) continue;
+    if ((part.center_m - wheel.center_m).norm() < 0.5 * wheel.radius_m) return;  // a part of this wheel
+    const bool is_same = std::abs(part.radius_m - wheel.radius_m) <= kSameRadius * wheel.radius_m;
+    const bool is_across = mirrors(part, wheel);
+    if (!is_across && (!is_same || is_one_of_pair)) continue;
+    layout.source.fail(joint.line, part.link->name,
+                       fmt::format("touches the ground like wheel {}, {}, but {}: a wheel must turn about its axle; "
+                                   "--caster {} if it slides",
+                                   wheel.joint->child, is_across ? "which it is across from" : "whose radius it has",
+                                   joint.type == JointType::kFixed
+                                       ? fmt::format("joint {} is fixed", joint.name)
+                                       : fmt::format("joint {} does not turn it about its axle", joint.name),
+                                   part.link->name));
+  }
+}
+
 }  // namespace
 
-/// Refuses a link of the chassis that looks like a wheel, but that no joint turns about its axle: often one wheel of
-/// several with a wrong axis or type of its joint. It is a cylinder or a round mesh on the ground. It is across from a
-/// wheel, or it has the radius of a wheel and is not one of a pair on fixed joints.
-void Normalizer::refuse_unturned_wheels() const {
+void refuse_unturned_wheels(const RobotLayout& layout, const std::set<std::string>& sliding) {
   std::vector<Lookalike> lookalikes;
-  for (const std::string& name : chassis_) {
-    if (name == base_ || options_.casters.contains(name)) continue;
-    const SourceLink& link = source_.link(name);
-    const bool has_collisions = !link.collisions.empty();
-    const std::vector<Shape>& shapes = has_collisions ? link.collisions : link.visuals;
-    Lookalike largest{.link = &link};
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-      if (has_collisions && support_shapes_.contains({name, i})) continue;
-      Eigen::AlignedBox3d box;
-      for (const Eigen::Vector3d& point : outline(shapes[i])) box.extend(T_base(name) * point);
-      const double radius_m = wheel_radius_m(shapes[i], T_base(name), box.center(), found_.wheels.front().axis);
-      if (radius_m > largest.radius_m) largest = {.link = &link, .center_m = box.center(), .radius_m = radius_m};
-    }
-    if (largest.radius_m > 0.0 && is_near_ground(largest.center_m.z() - largest.radius_m))
-      lookalikes.push_back(largest);
+  for (const std::string& name : layout.chassis) {
+    if (name == layout.base || sliding.contains(name)) continue;
+    if (const auto part = lookalike_of(layout, layout.source.link(name))) lookalikes.push_back(*part);
   }
   for (const Lookalike& part : lookalikes) {
-    const SourceJoint* joint = source_.parent_joint(part.link->name);
-    while (joint != nullptr && joint->type == JointType::kFixed && source_.parent_joint(joint->parent) != nullptr &&
-           source_.parent_joint(joint->parent)->type != JointType::kFixed)
-      joint = source_.parent_joint(joint->parent);
+    const SourceJoint* joint = joint_of(layout.source, part);
     if (joint == nullptr) continue;
     const bool is_one_of_pair = joint->type == JointType::kFixed && has_lookalike_across(part, lookalikes);
-    for (const FoundWheel& wheel : found_.wheels) {
-      if (wheel.carrier_type == CarrierType::kCaster || wheel.is_ball) continue;
-      if ((part.center_m - wheel.center_m).norm() < 0.5 * wheel.radius_m) break;  // a part of this wheel
-      const bool is_same = std::abs(part.radius_m - wheel.radius_m) <= kSameRadius * wheel.radius_m;
-      const bool is_across = mirrors(part, wheel);
-      if (!is_across && (!is_same || is_one_of_pair)) continue;
-      source_.fail(joint->line, part.link->name,
-                   fmt::format("touches the ground like wheel {}, {}, but {}: a wheel must turn about its axle; "
-                               "--caster {} if it slides",
-                               wheel.joint->child, is_across ? "which it is across from" : "whose radius it has",
-                               joint->type == JointType::kFixed
-                                   ? fmt::format("joint {} is fixed", joint->name)
-                                   : fmt::format("joint {} does not turn it about its axle", joint->name),
-                               part.link->name));
-    }
+    refuse_if_like_wheel(layout, part, *joint, is_one_of_pair);
   }
 }
 

@@ -1,13 +1,15 @@
+#include "importer/normalize_origins.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
-#include "importer/normalizer.h"
 #include "importer/scan_plane.h"
 #include "importer/surface_distance.h"
 #include "sim/as_built/as_built_settings.h"
@@ -35,25 +37,23 @@ double distance_until_clear_m(const RobotSurface& surface, const Eigen::Vector3d
 
 }  // namespace
 
-/// Moves the origin of a lidar that is inside a visual shape of the chassis, or so near that the tolerance of its mount
-/// may put it inside: all its beams would end there. Its housing is ignored and stays. Upward, or to a side where this
-/// is less than a third of the distance.
-void Normalizer::clear_origin(const std::string& frame, const std::string& link) {
+void clear_origin(const RobotLayout& layout, const std::string& frame, const std::string& link,
+                  NormalizedRobot& robot) {
   if (!frame.starts_with("lidar")) return;
-  NormalizedLink& sensor = result_.links.back();
+  NormalizedLink& sensor = robot.links.back();
   const bool has_housing = !sensor.visuals.empty() || !sensor.collisions.empty();
   RobotSurface surface;
-  for (const std::string& name : chassis_) {
+  for (const std::string& name : layout.chassis) {
     if (has_housing && name == link) continue;
-    for (const Shape& shape : source_.link(name).visuals) {
-      if (!shape.rgba || (*shape.rgba)[3] > 0.0) surface.add(name, shape, T_base(name));
+    for (const Shape& shape : layout.source.link(name).visuals) {
+      if (!shape.rgba || (*shape.rgba)[3] > 0.0) surface.add(name, shape, layout.T_base(name));
     }
   }
   const Pose3 T_base_old = sensor.joint->T_parent_link;
   const double tolerance_m = sim::MountingTolerances{}.position_m;
   const auto inside = surface.clearance(T_base_old.position, std::numbers::sqrt3 * tolerance_m);
   if (!inside) return;
-  const std::string key = fmt::format("mounts in {}.yaml", result_.name);
+  const std::string key = fmt::format("mounts in {}.yaml", robot.name);
   constexpr double kAside = 3.0;  // weight of a distance to a side
   double min_weighted_m = std::numeric_limits<double>::infinity(), distance_m = 0.0;
   std::string side;
@@ -75,7 +75,7 @@ void Normalizer::clear_origin(const std::string& frame, const std::string& link)
           : fmt::format("only {:.3f} m from a visual of {}, and its mount has a tolerance of {:.3f} m",
                         std::max(0.0, inside->distance_m), inside->link, tolerance_m);
   if (side.empty()) {
-    assume(frame, fmt::format("its origin is {}: its beams end there", where), key);
+    robot.assumptions.push_back({frame, fmt::format("its origin is {}: its beams end there", where), key});
     return;
   }
   sensor.joint->T_parent_link.position += move;
@@ -83,23 +83,24 @@ void Normalizer::clear_origin(const std::string& frame, const std::string& link)
   for (std::vector<NormalizedShape>* shapes : {&sensor.visuals, &sensor.collisions}) {
     for (NormalizedShape& shape : *shapes) shape.shape.T_link_shape = T_new_old * shape.shape.T_link_shape;
   }
-  assume(frame,
-         fmt::format("its origin is moved {} by {:.3f} m: in the file it is {}, where its beams would end", side,
-                     distance_m, where),
-         key);
+  robot.assumptions.push_back(
+      {frame,
+       fmt::format("its origin is moved {} by {:.3f} m: in the file it is {}, where its beams would end", side,
+                   distance_m, where),
+       key});
 }
 
-/// Reports a 2D lidar whose scan plane is not horizontal.
-void Normalizer::check_scan_plane(const std::string& frame) {
+void check_scan_plane(const std::string& frame, NormalizedRobot& robot) {
   if (frame != "lidar" && frame != "lidar_rear") return;
-  const Pose3& T_base_lidar = result_.links.back().joint->T_parent_link;
+  const Pose3& T_base_lidar = robot.links.back().joint->T_parent_link;
   const double up = std::abs((T_base_lidar.rotation * Eigen::Vector3d::UnitZ()).z());
   const double tilt_deg = to_deg(std::acos(std::min(up, 1.0)));
   if (tilt_deg <= kMaxScanTilt_deg) return;
-  assume(
-      frame,
-      fmt::format("its scan plane is tilted by {:.0f} degrees: mapping and navigation need a horizontal one", tilt_deg),
-      fmt::format("<origin rpy> of the sensor, or mounts in {}.yaml", result_.name));
+  robot.assumptions.push_back(
+      {frame,
+       fmt::format("its scan plane is tilted by {:.0f} degrees: mapping and navigation need a horizontal one",
+                   tilt_deg),
+       fmt::format("<origin rpy> of the sensor, or mounts in {}.yaml", robot.name)});
 }
 
 }  // namespace patrol::importer
