@@ -47,8 +47,8 @@ class LinkBuilder {
   NormalizedRobot& robot_;
   NameRegistry used_links_, used_joints_, used_files_;
   std::map<std::string, std::string> link_names_, joint_names_;  ///< source to result
-  std::map<const void*, std::vector<ColoredFile>> mesh_files_;   ///< by mesh
-  std::map<const void*, std::vector<std::string>> hull_files_;   ///< by mesh
+  std::map<const void*, std::vector<ColoredFile>> mesh_files_;   ///< files by mesh
+  std::map<const void*, std::vector<std::string>> hull_files_;   ///< files by mesh
 };
 
 }  // namespace patrol::importer

@@ -15,7 +15,7 @@ namespace {
 
 /// Part of a caster: its carrier or its wheel.
 struct CasterPart {
-  double radius_m = 0.0;  ///< of the wheel
+  double radius_m = 0.0;  ///< radius of the wheel
   bool rolls = false;
 };
 

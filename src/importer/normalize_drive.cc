@@ -155,7 +155,7 @@ void check_fixed_sides(const RobotLayout& layout) {
 /// Rollers of all wheels of a mecanum drive.
 struct RollerCount {
   int num_x = 0, num_o = 0;  ///< wheels whose upper rollers are along an X or an O, seen from above
-  double sum_rad = 0.0;      ///< of the angles of the rollers to the axle
+  double sum_rad = 0.0;      ///< sum of the angles of the rollers to the axle
 };
 
 /// Checks that a mecanum drive has a driven wheel at each corner that does not swivel, and counts their rollers.

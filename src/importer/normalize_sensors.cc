@@ -81,7 +81,7 @@ std::string links_named(const std::set<std::string>& links, std::initializer_lis
 /// Frames of sensors that the result has.
 struct AddedFrames {
   std::set<std::string> names;
-  std::map<std::string, Pose3> T_base_described;  ///< of the sensors of the file
+  std::map<std::string, Pose3> T_base_described;  ///< poses of the sensors of the file
 };
 
 /// Returns the frame that an option gives to a sensor of the file, by its link; none if no option does.

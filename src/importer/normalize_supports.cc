@@ -41,7 +41,7 @@ struct WheelArea {
 struct ShapeBottom {
   Eigen::Vector3d lower = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector3d upper = -lower;
-  double radius_m = 0.0;  ///< of the ball that replaces the shape
+  double radius_m = 0.0;  ///< radius of the ball that replaces the shape
   double bottom_m = 0.0;
 };
 

@@ -19,7 +19,7 @@ struct Support {
   std::string name;
   Eigen::Vector3d center_m;
   double radius_m;
-  std::string link;  ///< of the file, from which mass is taken; empty: base
+  std::string link;  ///< link of the file from which mass is taken; empty: base
 };
 
 /// Mass of the file and box around all shapes, in the root.
@@ -43,7 +43,7 @@ struct RobotLayout {
   std::set<const SourceJoint*> driven = {};   ///< wheel joints with motors
   std::set<const SourceJoint*> casters = {};  ///< wheel joints that are replaced by supports
   std::set<std::string> chassis = {};         ///< links of the base's rigid group
-  std::string base = {};                      ///< link of the file
+  std::string base = {};                      ///< link of the file that becomes the base
   Pose3 T_root_base = {};
   double ground_m = 0.0;  ///< height of the ground in the base
   std::set<std::pair<std::string, std::size_t>> support_shapes =
