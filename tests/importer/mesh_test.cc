@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "importer/hull.h"
-#include "tests/importer/description.h"
+#include "tests/importer/robot/description.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 

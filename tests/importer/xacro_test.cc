@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "importer/robot_import.h"
-#include "tests/importer/description.h"
-#include "tests/importer/import.h"
+#include "importer/robot/robot_import.h"
+#include "tests/importer/robot/description.h"
+#include "tests/importer/robot/import.h"
 #include "tests/support/pose_near.h"
 #include "tests/support/temporary_file.h"
 #include "tests/support/xacro.h"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/geometry/angles.h"
-#include "importer/scan_plane.h"
+#include "importer/robot/scan_plane.h"
 
 namespace patrol::app {
 namespace {

@@ -17,7 +17,7 @@
 #include "app/scenario/mounts.h"
 #include "app/scenario/scenario.h"
 #include "core/error.h"
-#include "importer/robot_import.h"
+#include "importer/robot/robot_import.h"
 #include "importer/site/site_format.h"
 #include "importer/site/site_import.h"
 #include "io/urdf.h"

@@ -14,8 +14,8 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
-#include "importer/source_reader.h"
 #include "importer/xacro.h"
+#include "importer/xml_elements.h"
 #include "io/files/atomic_file.h"
 #include "io/files/one_line.h"
 

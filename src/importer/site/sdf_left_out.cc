@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "importer/source_reader.h"
+#include "importer/xml_elements.h"
 
 namespace patrol::importer {
 namespace {

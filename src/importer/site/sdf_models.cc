@@ -13,7 +13,7 @@
 #include "core/error.h"
 #include "core/letter_case.h"
 #include "importer/site/sdf_source.h"
-#include "importer/source_reader.h"
+#include "importer/xml_elements.h"
 #include "io/files/one_line.h"
 #include "io/files/xml_problem.h"
 

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "importer/scan_band.h"
+#include "importer/robot/scan_band.h"
 
 namespace patrol::app::scan_reach_test {
 namespace {
