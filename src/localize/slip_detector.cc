@@ -35,6 +35,14 @@ std::optional<SlipDetector::Sum> SlipDetector::sum_at(Time stamp) const {
   return *after;
 }
 
+double SlipDetector::roughness_bound_mps(const Sum& from, const Sum& to) {
+  return kSigmas * std::sqrt(to.variance_m2ps2 - from.variance_m2ps2);
+}
+
+double SlipDetector::roughness_bound_mps() const {
+  return evidence_start_ && !sums_.empty() ? roughness_bound_mps(*evidence_start_, sums_.back()) : 0.0;
+}
+
 std::optional<SlipEvidence> SlipDetector::add_speed(Time stamp, double tracks_mps, double estimated_mps) {
   const std::optional<Sum> sum = sum_at(stamp);
   if (!sum) {
@@ -46,10 +54,11 @@ std::optional<SlipEvidence> SlipDetector::add_speed(Time stamp, double tracks_mp
   const Reading& first = readings_.front();
   const double felt = sum->speed_mps - first.sum.speed_mps;
   const double disagreement = (tracks_mps - first.tracks_mps) - felt;
-  const double rough_std = std::sqrt(sum->variance_m2ps2 - first.sum.variance_m2ps2);
   const double lasting_std = sum->lasting_std_mps - first.sum.lasting_std_mps;
-  const double threshold = settings_.threshold_mps + kSigmas * rough_std + kLastingSigmas * lasting_std;
+  const double threshold =
+      settings_.threshold_mps + roughness_bound_mps(first.sum, *sum) + kLastingSigmas * lasting_std;
   if (std::abs(disagreement) < threshold) return std::nullopt;
+  evidence_start_ = first.sum;
   return SlipEvidence{.forward_mps = first.estimated_mps + felt,
                       .disagreement_mps = disagreement,
                       .duration_s = to_seconds(stamp - first.sum.stamp)};

@@ -31,12 +31,15 @@ class SlipDetector {
   /// Adds a track reading, not newer than the newest acceleration: mean track speed and estimated body speed. Returns
   /// evidence if there is slip.
   std::optional<SlipEvidence> add_speed(Time stamp, double tracks_mps, double estimated_mps);
+  /// Returns the bound of the error from roughness of the speed that is integrated from the accelerations since the
+  /// start of the window of the last evidence: a bump leaves the speed of the body uncertain. Zero without evidence.
+  double roughness_bound_mps() const;
   /// Starts a new window.
   void reset();
 
   template <typename Archive>
   void serialize_state(Archive& archive) {
-    archive(sums_, readings_, last_acceleration_);
+    archive(sums_, readings_, evidence_start_, last_acceleration_);
   }
 
  private:
@@ -52,10 +55,12 @@ class SlipDetector {
     double estimated_mps = 0.0;
   };
   std::optional<Sum> sum_at(Time stamp) const;
+  static double roughness_bound_mps(const Sum& from, const Sum& to);
 
   Settings settings_;
   std::deque<Sum> sums_;
   std::deque<Reading> readings_;
+  std::optional<Sum> evidence_start_;  ///< sum at the start of the window of the last evidence
   double last_acceleration_ = 0.0;
 };
 

@@ -18,7 +18,7 @@ constexpr double kStandstillCreep_m = 1e-5;                  // motion of the tr
 constexpr double kMaxBiasSigmas = 5.0;                       // a larger reading at rest is a rotation
 constexpr double kTrackVelocityLimitStd_mps = 0.5;           // bound on the velocity error without encoders
 constexpr double kSystematicLateral = 0.005;                 // lateral per forward velocity, straight motion
-constexpr double kAgreement_mps = 0.15;                      // maximum difference of tracks and IMU after slip,
+constexpr double kAgreement_mps = 0.15;                      // difference of tracks and IMU that ends slip,
 constexpr Time kAgreement = std::chrono::milliseconds(300);  // and its minimum duration
 
 const TrackOdometrySettings& checked(const TrackOdometrySettings& settings) {
@@ -203,13 +203,17 @@ Eigen::Vector3d TrackOdometry::speed_std(const EncoderInterval& interval, const 
 
 // Loss of traction and frozen encoders are alike: the track speeds differ from the body speed. The IMU alone propagates
 // the estimate until both agree for `kAgreement`, or until the body is at rest on stationary tracks. The latter ends a
-// wrong detection after a stop that the accelerometer has not measured.
+// wrong detection after a stop that the accelerometer has not measured. Tracks that turn also agree with the IMU within
+// the error of its speed after a bump.
 bool TrackOdometry::update_slip_state(const EncoderInterval& interval) {
   const double estimated_mps = imu_.filter()->motion().v_body.x(), track_mps = interval.smooth.mean_mps();
   if (is_slipping_) {
-    if (std::abs(track_mps - estimated_mps) > kAgreement_mps) agree_since_.reset();
+    const bool is_stationary = encoders_.is_stationary();
+    const double agreement_mps =
+        is_stationary ? kAgreement_mps : std::max(kAgreement_mps, slip_detector_.roughness_bound_mps());
+    if (std::abs(track_mps - estimated_mps) > agreement_mps) agree_since_.reset();
     else if (!agree_since_) agree_since_ = interval.start;
-    const bool is_at_rest = encoders_.is_stationary() && rest_detector_.is_at_rest();
+    const bool is_at_rest = is_stationary && rest_detector_.is_at_rest();
     if (is_at_rest) imu_.filter()->correct_velocity(Eigen::Vector3d::Zero(), kStandingStd_mps);
     else if (!agree_since_ || interval.end - *agree_since_ < kAgreement) return false;
     is_slipping_ = false;

@@ -53,6 +53,20 @@ TEST(SlipDetector, AnAccelerationWithALastingErrorAsksForMore) {
   EXPECT_NEAR(evidence->disagreement_mps, 0.5, 0.021);
 }
 
+// Half the square of 2 * 5 m/s2 each 4 ms: 0.028 m/s per step, with the root of 250 steps.
+TEST(SlipDetector, FourStandardDeviationsOfARoughRideAreTheBoundSinceTheEvidence) {
+  Drive drive;
+  EXPECT_EQ(drive.watch.roughness_bound_mps(), 0.0);
+  ASSERT_TRUE(drive.speed_up(1.0, 0.0, 1.0));
+  EXPECT_NEAR(drive.watch.roughness_bound_mps(), 0.0, 1e-9);
+  drive.watch.reset();
+  for (int i = 0; i < 250; ++i) {
+    ++drive.step;
+    drive.watch.add_acceleration(from_seconds(drive.step * kDt), kDt, i % 2 == 0 ? 5.0 : -5.0);
+  }
+  EXPECT_NEAR(drive.watch.roughness_bound_mps(), 4.0 * 0.0283 * std::sqrt(250.0), 0.02);
+}
+
 TEST(SlipDetector, ARoughRideAsksForMore) {
   // Half the square of 2 * 5 m/s2 each 4 ms: 0.028 m/s per step, 0.2 m/s over 0.2 s; four of these on top of 0.2.
   EXPECT_FALSE(Drive().speed_up(1.0, 0.0, 0.4, 5.0));

@@ -40,6 +40,29 @@ TEST(TrackOdometryFaults, OnIceTheBodyStaysWithinThreeSigmaOfItsPosition) {
   }
 }
 
+// A push of -6 m/s2 for 0.15 s that is no motion, and shocks of 28 m/s2 after it.
+TEST(TrackOdometryFaults, AfterABumpTheCountersAreUsedAgainWithinOneSecond) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    TrackedDrive drive(make_tracked_robot(), stand_then_drive({0.6, 0.6}), {}, seed);
+    TrackOdometry odometry(make_tracked_robot(), {});
+    run(drive, odometry, 6.0);
+    bool has_slipped = false;
+    for (int step = 0; to_seconds(drive.now()) < 7.6; ++step) {
+      drive.step();
+      Imu imu = drive.imu();
+      if (const double time_s = to_seconds(drive.now()); time_s < 6.6)
+        imu.linear_acceleration_mps2.x() += time_s < 6.15 ? -6.0 : step / 4 % 2 == 0 ? 28.0 : -28.0;
+      odometry.add(imu);
+      if (drive.has_ticks()) odometry.add(drive.ticks());
+      has_slipped = has_slipped || odometry.health().is_slipping;
+    }
+    EXPECT_TRUE(has_slipped);
+    EXPECT_FALSE(odometry.health().is_slipping);
+    run(drive, odometry, 20.0);
+    EXPECT_LT(std::abs(planar_error(odometry, drive).x()), 1.0);
+  }
+}
+
 TEST(TrackOdometryFaults, CountersFrozenForFourSecondsAreSurvivedAndReported) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     TrackedDrive drive(make_tracked_robot(), make_tour(), {}, seed);
