@@ -84,14 +84,15 @@ class ImportRobot(unittest.TestCase):
 
     def test_joints_that_are_too_slow_to_walk_are_reported(self):
         urdf = (SOURCE / "models/quadruped/quadruped.urdf").read_text()
-        for name, limit, is_slow in [("fast", "21", False), ("slow", "1.5", True)]:
+        for name, limit, is_limited, is_slow in [("fast", "21", False, False), ("limited", "12", True, False), ("slow", "1.5", True, True)]:
             source = self.folder / f"{name}.urdf"
             source.write_text(re.sub(r'velocity="[0-9.]+"', f'velocity="{limit}"', urdf))
             result = self.patrol("import", "robot", source, "--out", f"models/{name}")
             self.assertEqual(result.returncode, 0, result.stderr)
             page = (self.folder / "models" / name / "README.md").read_text()
             self.assertEqual("of clearance below the feet needs" in page, is_slow, page)
-            self.assertEqual("speed limits of the legs' joints" in result.stdout, is_slow)
+            self.assertEqual("speed limits of the legs' joints" in result.stdout, is_limited)
+            self.assertEqual("allow a walk at 0.43 m/s, instead of the 1.00 m/s of the size" in page, is_limited and not is_slow, page)
 
     def test_a_robot_without_a_lidar_is_imported_and_checked_as_the_same_robot_with_one(self):
         self.assertEqual(self.patrol("import", "robot", self.urdf, "--out", "models/four").returncode, 0)

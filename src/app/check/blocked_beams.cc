@@ -23,13 +23,22 @@
 namespace patrol::app {
 namespace {
 
+/// Robot in its start posture.
+struct StandingRobot {
+  const sim::LidarScene& scene;
+  Pose3 T_world_body;
+  double min_obstacle_z_m = 0.0;  ///< height in body above which the built-in stack takes hits for obstacles
+};
+
 /// Casts every `step`-th beam of the rings of a lidar at the robot alone.
-BlockedBeams beams_on_robot(const CheckLidar& lidar, const Pose3& T_world_lidar, const sim::LidarScene& scene,
-                            int step) {
+BlockedBeams beams_on_robot(const CheckLidar& lidar, const Pose3& T_body_lidar, const StandingRobot& robot, int step) {
+  const Pose3 T_world_lidar = robot.T_world_body * T_body_lidar;
+  const mjModel& model = robot.scene.model();
   const LidarSettings& settings = lidar.settings;
   const std::uint32_t mask = sim::kRayEverything & ~std::uint32_t{sim::kRayScenery} & ~std::uint32_t{lidar.housing};
   std::map<std::string, int> num_hits;
   int num_blocked = 0, num_cast = 0;
+  double max_distance_m = 0.0;
   for (int ring = 0; ring < settings.rings; ++ring) {
     const double part = settings.rings > 1 ? static_cast<double>(ring) / (settings.rings - 1) : 0.0;
     const double elevation = to_rad(std::lerp(settings.elevation_min_deg, settings.elevation_max_deg, part));
@@ -39,10 +48,12 @@ BlockedBeams beams_on_robot(const CheckLidar& lidar, const Pose3& T_world_lidar,
       const Eigen::Vector3d direction{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                                       std::sin(elevation)};
       const std::optional<sim::RayHit> hit =
-          scene.cast(T_world_lidar.position, T_world_lidar.rotation * direction, settings.range_max_m, mask);
+          robot.scene.cast(T_world_lidar.position, T_world_lidar.rotation * direction, settings.range_max_m, mask);
       if (!hit) continue;
       ++num_blocked;
-      ++num_hits[std::string(sim::name_of(scene.model(), mjOBJ_BODY, scene.model().geom_bodyid[hit->geom]))];
+      const Eigen::Vector3d p_body = T_body_lidar * Eigen::Vector3d(hit->distance_m * direction);
+      if (p_body.z() >= robot.min_obstacle_z_m) max_distance_m = std::max(max_distance_m, p_body.head<2>().norm());
+      ++num_hits[std::string(sim::name_of(model, mjOBJ_BODY, model.geom_bodyid[hit->geom]))];
     }
   }
   std::vector<std::pair<int, std::string>> links;
@@ -50,6 +61,7 @@ BlockedBeams beams_on_robot(const CheckLidar& lidar, const Pose3& T_world_lidar,
   std::ranges::sort(links);
   BlockedBeams blocked{
       .frame = lidar.frame, .ratio = static_cast<double>(num_blocked) / std::max(num_cast, 1), .links = {}};
+  blocked.max_distance_m = max_distance_m;
   for (const auto& [num, link] : links) blocked.links.push_back(link);
   return blocked;
 }
@@ -68,15 +80,16 @@ std::vector<Pose3> mount_corners(const sim::AsBuiltSettings& as_built) {
 }
 
 /// Returns the blocked beams with the nominal mount, and the largest ratio within the tolerance of the mount.
-BlockedBeams beams_within_tolerance(const CheckLidar& lidar, const Pose3& T_world_lidar, const sim::LidarScene& scene,
+BlockedBeams beams_within_tolerance(const CheckLidar& lidar, const Pose3& T_body_lidar, const StandingRobot& robot,
                                     const sim::AsBuiltSettings& as_built) {
   constexpr int kMaxBeams = 4000;
-  BlockedBeams blocked = beams_on_robot(lidar, T_world_lidar, scene, 1);
+  BlockedBeams blocked = beams_on_robot(lidar, T_body_lidar, robot, 1);
   blocked.max_ratio = blocked.ratio;
   blocked.max_links = blocked.links;
   const int step = 1 + lidar.settings.rings * lidar.settings.beams / kMaxBeams;
   for (const Pose3& T_nominal_actual : mount_corners(as_built)) {
-    BlockedBeams actual = beams_on_robot(lidar, T_world_lidar * T_nominal_actual, scene, step);
+    BlockedBeams actual = beams_on_robot(lidar, T_body_lidar * T_nominal_actual, robot, step);
+    blocked.max_distance_m = std::max(blocked.max_distance_m, actual.max_distance_m);
     if (actual.ratio <= blocked.max_ratio) continue;
     blocked.max_ratio = actual.ratio;
     blocked.max_links = std::move(actual.links);
@@ -100,17 +113,29 @@ std::vector<BlockedBeams> blocked_beams(const CheckRobot& robot, const std::file
   const int body = mj_name2id(model.view.get(), mjOBJ_BODY, frame_id::kBody);
   const mjtNum* p = data->xpos + 3 * body;
   const mjtNum* q = data->xquat + 4 * body;
-  const Pose3 T_world_body{{p[0], p[1], p[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+  const StandingRobot standing{.scene = scene,
+                               .T_world_body = {{p[0], p[1], p[2]}, Eigen::Quaterniond(q[0], q[1], q[2], q[3])},
+                               .min_obstacle_z_m = robot.scan_leveling.min_height_m - robot.expected_height_m};
   std::vector<BlockedBeams> result;
   for (const CheckLidar& lidar : robot.lidars)
-    result.push_back(beams_within_tolerance(lidar, T_world_body * robot.description.T_body(lidar.frame), scene,
-                                            robot.simulator.as_built));
+    result.push_back(
+        beams_within_tolerance(lidar, robot.description.T_body(lidar.frame), standing, robot.simulator.as_built));
   return result;
 }
 
-std::vector<std::string> warnings_of(const std::vector<BlockedBeams>& lidars) {
+std::vector<std::string> warnings_of(const std::vector<BlockedBeams>& lidars,
+                                     const localize::ScanLevelerSettings& scan_leveling) {
   constexpr double kManyBeams = 0.05;
   std::vector<std::string> warnings;
+  const auto consequence_of = [&](const BlockedBeams& lidar) {
+    constexpr double kMargin_m = 0.05;  // noise of the ranges
+    const double radius_m = scan_leveling.self_filter_radius_m;
+    if (lidar.max_distance_m <= radius_m) return std::string();
+    return fmt::format(
+        "; these hits are up to {:.2f} m from the middle of the robot, and block its path beyond "
+        "stack.scan_leveling.self_filter_radius_m, {:.2f} m: set it to {:.2f} m",
+        lidar.max_distance_m, radius_m, lidar.max_distance_m + kMargin_m);
+  };
   for (const BlockedBeams& lidar : lidars) {
     if (lidar.ratio >= 1.0) {
       warnings.push_back(fmt::format("all beams of {} hit the robot itself: its frame is enclosed in {}", lidar.frame,
@@ -118,11 +143,12 @@ std::vector<std::string> warnings_of(const std::vector<BlockedBeams>& lidars) {
     } else if (lidar.max_ratio > std::max(kManyBeams, lidar.ratio + kManyBeams)) {
       warnings.push_back(
           fmt::format("{:.0f} % of the beams of {} hit the robot itself with a mount within the tolerance "
-                      "as_built.mounting, {:.0f} % with the nominal mount: {}: raise the frame by mounts",
-                      100.0 * lidar.max_ratio, lidar.frame, 100.0 * lidar.ratio, join(lidar.max_links, ", ")));
+                      "as_built.mounting, {:.0f} % with the nominal mount: {}: raise the frame by mounts{}",
+                      100.0 * lidar.max_ratio, lidar.frame, 100.0 * lidar.ratio, join(lidar.max_links, ", "),
+                      consequence_of(lidar)));
     } else if (lidar.ratio > kManyBeams) {
-      warnings.push_back(fmt::format("{:.0f} % of the beams of {} hit the robot itself: {}", 100.0 * lidar.ratio,
-                                     lidar.frame, join(lidar.links, ", ")));
+      warnings.push_back(fmt::format("{:.0f} % of the beams of {} hit the robot itself: {}{}", 100.0 * lidar.ratio,
+                                     lidar.frame, join(lidar.links, ", "), consequence_of(lidar)));
     }
   }
   return warnings;

@@ -19,7 +19,7 @@ struct Figure {
 
 /// "slip ratio" of "slip_ratio": the name without underscores and without the units of lengths, angles and times.
 std::string label_of(const Figure& figure);
-/// Value with a unit that suits its magnitude.
+/// Value with a unit that suits its magnitude, and with enough digits to tell it from a limit that it does not meet.
 std::string value_text(const Figure& figure);
 /// "at most 5.0 cm", "at least 9.6 m", "0.900 to 1.100"; empty without limits.
 std::string limit_text(const Figure& figure);

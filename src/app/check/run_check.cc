@@ -52,7 +52,9 @@ CheckResult run_check(const CheckRobot& robot, const CheckProgress& progress) {
   const std::vector<Maneuver> maneuvers = maneuvers_of(robot);
   double total_s = 0.0, done_s = 0.0;
   for (const Maneuver& maneuver : maneuvers) total_s += maneuver.duration_s;
-  CheckResult result{.robot = robot, .warnings = warnings_of(blocked_beams(robot, folder.path())), .maneuvers = {}};
+  CheckResult result{.robot = robot,
+                     .warnings = warnings_of(blocked_beams(robot, folder.path()), robot.scan_leveling),
+                     .maneuvers = {}};
   std::ranges::move(scan_reach_warnings(robot), std::back_inserter(result.warnings));
   std::ranges::move(scan_plane_warnings(robot), std::back_inserter(result.warnings));
   for (const Maneuver& maneuver : maneuvers) {

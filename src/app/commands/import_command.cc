@@ -21,6 +21,7 @@
 #include "importer/site/site_format.h"
 #include "importer/site/site_import.h"
 #include "io/urdf.h"
+#include "sim/leg_scale.h"
 #include "sim/locomotion/locomotion_settings.h"
 #include "sim/locomotion/swing_speed.h"
 
@@ -54,7 +55,8 @@ void print(const std::vector<importer::Assumption>& assumptions, const std::file
   fmt::print("{}{} assumptions; {}\n", assumptions.empty() ? "" : "\n", assumptions.size(), out.string());
 }
 
-/// Adds an assumption for legs whose joints are too slow for the swing of the slowest walk.
+/// Adds an assumption for legs whose joints are too slow for the swing of the slowest walk, or for the speed of walking
+/// that the size of the robot allows.
 void check_joint_speeds(importer::ImportedRobot& robot) {
   const TemporaryFolder folder("import");
   importer::write_robot(robot, folder.path());
@@ -63,6 +65,16 @@ void check_joint_speeds(importer::ImportedRobot& robot) {
   sim::LocomotionSettings walk = sim::scaled_locomotion(description);
   walk.swing_clearance_m = std::min(walk.swing_clearance_m, sim::min_swing_clearance_m(description));
   const double ratio = sim::peak_swing_speed_ratio(description, walk, walk.max_forward_mps);
+  const sim::LegScale scale = sim::leg_scale(description);
+  const double usual_mps = scale.length / scale.time * sim::LocomotionSettings{}.max_forward_mps;
+  constexpr double kSlower = 0.95;
+  if (ratio <= 1.0 && walk.max_forward_mps < kSlower * usual_mps) {
+    robot.assumptions.push_back(
+        {.subject = "speed limits of the legs' joints",
+         .text = fmt::format("allow a walk at {:.2f} m/s, instead of the {:.2f} m/s of the size of the robot",
+                             walk.max_forward_mps, usual_mps),
+         .override_with = "<limit velocity> of the joints, locomotion.max_forward_mps"});
+  }
   if (ratio <= 1.0) return;
   robot.assumptions.push_back(
       {.subject = "speed limits of the legs' joints",

@@ -149,7 +149,10 @@ void check_fixed_sides(const RobotLayout& layout) {
   const auto first =
       std::ranges::find_if(wheels, [](const FoundWheel& wheel) { return wheel.carrier_type != CarrierType::kCaster; });
   const SourceJoint* at = left != nullptr ? left->joint : right != nullptr ? right->joint : first->joint;
-  fail_for_wheels(layout, at, "wheels that are not steered are on one side only: both sides must have one");
+  fail_for_wheels(layout, at,
+                  left == nullptr && right == nullptr
+                      ? "all wheels but casters are steered: not supported: both sides must have one that is not"
+                      : "wheels that are not steered are on one side only: both sides must have one");
 }
 
 /// Rollers of all wheels of a mecanum drive.

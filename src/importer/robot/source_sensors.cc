@@ -70,11 +70,14 @@ void SourceReader::read_command_limits(const XMLElement& control, const std::str
     }
     std::optional<double>& stated = kind == "velocity" ? joint->velocity : joint->effort;
     if (limit <= 0.0 || !std::isfinite(limit) || (stated.value_or(0.0) > 0.0 && *stated <= limit)) continue;
+    const std::string unit = kind == "velocity" ? "rad/s" : "N m";
+    const std::string discarded =
+        stated.value_or(0.0) > 0.0 ? fmt::format(", instead of the {:.4g} {} of <limit>", *stated, unit) : "";
     stated = limit;
     robot_.assumptions.push_back(
         {.subject = name,
-         .text = fmt::format("{} limit {:.4g} {} is that of its command interface",
-                             kind == "velocity" ? "speed" : "torque", limit, kind == "velocity" ? "rad/s" : "N m"),
+         .text = fmt::format("{} limit {:.4g} {} is that of its command interface{}",
+                             kind == "velocity" ? "speed" : "torque", limit, unit, discarded),
          .override_with = "<param name=\"min\"> and <param name=\"max\"> of the <command_interface>"});
   }
 }

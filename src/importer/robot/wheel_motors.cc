@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kAssumedSpeedRadius_m = 0.1;  // of the smallest wheels at kAssumedSpeed_mps
 constexpr double kPlaceholderRatio = 10.0;     // of a speed limit to the assumed one
+constexpr double kSlowRatio = 0.2;             // likewise, below which the limit is probably not that of the robot
 constexpr double kTorqueReserve = 1.5;  // loads differ, and wheels that skid sideways need the torque of friction
 
 /// Returns the torque of the friction of a tire, N m, if the driven wheels carry the robot.
@@ -55,6 +56,13 @@ Motor motor_of(const FoundWheel& wheel, std::size_t num_driven, double mass_kg, 
 
 double speed_of(const FoundWheel& wheel, const Motor& motor, std::vector<Assumption>& rows) {
   const double limit_mps = motor.velocity_radps * wheel.radius_m, assumed_mps = assumed_speed_mps(wheel.radius_m);
+  if (limit_mps < kSlowRatio * assumed_mps) {
+    rows.push_back({wheel.joint->name,
+                    fmt::format("speed limit {:.4g} rad/s of the file is {:.2g} m/s: slow, a robot of its size without "
+                                "a limit drives at {:.2g} m/s",
+                                motor.velocity_radps, limit_mps, assumed_mps),
+                    "<limit velocity> of the joint, or its command interface"});
+  }
   if (limit_mps <= kPlaceholderRatio * assumed_mps) return limit_mps;
   rows.push_back(
       {wheel.joint->name,

@@ -38,5 +38,14 @@ TEST(CheckFigure, HasTextsWithTheUnitOfItsName) {
   EXPECT_EQ(limit_text({.name = "yaw_rate_ratio", .min = 0.85, .max = 1.15}), "0.850 to 1.150");
 }
 
+TEST(Figure, AValueThatMissesItsLimitByLessThanTheUsualDigitsHasMoreOfThem) {
+  const Figure speed{.name = "speed_mps", .value = 0.9841, .min = 0.9849};
+  EXPECT_EQ(value_text(speed) + ": " + limit_text(speed), "0.984 m/s: at least 0.985 m/s");
+  const Figure creep{.name = "creep_m", .value = 0.02003, .max = 0.02};
+  EXPECT_EQ(value_text(creep) + ": " + limit_text(creep), "0.02003 m: at most 0.02000 m");
+  const Figure ratio{.name = "yaw_rate_ratio", .value = 1.0, .min = 0.85, .max = 1.15};
+  EXPECT_EQ(value_text(ratio), "1.000");
+}
+
 }  // namespace
 }  // namespace patrol::app::figure_test

@@ -305,21 +305,27 @@ TEST(BrokenDescription, ADrivenLinkThatIsNoWheelIsNamedWithItsReason) {
 }
 
 TEST(BrokenDescription, ARobotWhoseWheelsAreAllSteeredByMotorsWithoutEnd) {
-  const auto modules = [](const std::string& motor) {
+  const auto modules = [](const std::string& front_motor, const std::string& rear_motor) {
     std::string text = chassis();
     for (const auto& [name, xyz] : {std::pair{"fl", "0.2 0.25 -0.05"},
                                     {"fr", "0.2 -0.25 -0.05"},
                                     {"rl", "-0.2 0.25 -0.05"},
                                     {"rr", "-0.2 -0.25 -0.05"}}) {
-      const std::string fork = std::string(name) + "_fork";
-      text += joint(std::string(name) + "_steer", "continuous", "base_link", fork, xyz, axis("0 0 1") + motor) +
+      const std::string fork = std::string(name) + "_fork", &motor = name[0] == 'f' ? front_motor : rear_motor;
+      const char* type = motor.find("lower") == std::string::npos ? "continuous" : "revolute";
+      text += joint(std::string(name) + "_steer", type, "base_link", fork, xyz, axis("0 0 1") + motor) +
               link(fork, inertial(0.5)) + wheel(name, fork, "0 0 0", 0.1, 0.05);
     }
     return robot(text);
   };
-  EXPECT_EQ(complaint(modules(R"(<limit effort="30" velocity="3"/>)")),
+  const std::string motor = R"(<limit effort="30" velocity="3"/>)";
+  EXPECT_EQ(complaint(modules(motor, motor)),
             "v.urdf:4: fl_steer: all 4 wheels are steered: not supported: fix the steering joints of one axle");
-  EXPECT_EQ(complaint(modules("")), "v.urdf:4: fl_steer: all wheels are casters: at least two wheels must not swivel");
+  EXPECT_EQ(complaint(modules("", "")),
+            "v.urdf:4: fl_steer: all wheels are casters: at least two wheels must not swivel");
+  EXPECT_THAT(complaint(modules(R"(<limit lower="-0.5" upper="0.5" effort="30" velocity="3"/>)", "")),
+              MatchesRegex("v.urdf:[0-9]+: fl_joint: all wheels but casters are steered: not supported: both sides "
+                           "must have one that is not"));
 }
 
 TEST(BrokenDescription, ATrailerOnAnEndlessHitch) {

@@ -1,6 +1,8 @@
 #include <string>
 #include <utility>
+#include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,13 +31,17 @@ std::string interfaces(const std::string& min, const std::string& max) {
 }
 
 TEST(DriveLimits, TheSpeedLimitOfACommandInterfaceIsUsedIfItIsTheOnlyOneOrTheLowerOne) {
-  for (const char* limit : {"", R"(<limit effort="10" velocity="12"/>)"}) {
+  const std::vector<std::pair<const char*, const char*>> cases = {
+      {"", ""}, {R"(<limit effort="10" velocity="12"/>)", ", instead of the 12 rad/s of &lt;limit>"}};
+  for (const auto& [limit, discarded] : cases) {
     Import import(with_limit(limit, interfaces("-4", "5")));
     import.load();
     EXPECT_THAT(import.robot.settings, HasSubstr("wheel_drive: {max_speed_mps: 0.50}"));
-    EXPECT_THAT(import.assumptions(),
-                AllOf(HasSubstr("| left_joint, right_joint | speed limit 5 rad/s is that of its command interface |"),
-                      Not(HasSubstr("<limit velocity> of the joint"))));
+    EXPECT_THAT(
+        import.assumptions(),
+        AllOf(HasSubstr(fmt::format(
+                  "| left_joint, right_joint | speed limit 5 rad/s is that of its command interface{} |", discarded)),
+              Not(HasSubstr("<limit velocity> of the joint"))));
   }
   Import higher(with_limit(kMotor, interfaces("-40", "40")));
   higher.load();
@@ -45,6 +51,18 @@ TEST(DriveLimits, TheSpeedLimitOfACommandInterfaceIsUsedIfItIsTheOnlyOneOrTheLow
   EXPECT_THAT(complaint(broken),
               MatchesRegex("vendor.urdf:[0-9]+: left_joint: max = \"fast\" of its command interface: "
                            "must be a number"));
+}
+
+TEST(DriveLimits, ASpeedLimitBelowAFifthOfTheUsualSpeedIsARowWithBothSpeeds) {
+  const auto rows_of = [](double limit_radps) {
+    Import import(with_limit(fmt::format(R"(<limit effort="10" velocity="{}"/>)", limit_radps)));
+    import.load();
+    return import.assumptions();
+  };
+  EXPECT_THAT(rows_of(2.9),
+              HasSubstr("speed limit 2.9 rad/s of the file is 0.29 m/s: slow, a robot of its size without "
+                        "a limit drives at 1.5 m/s"));
+  EXPECT_THAT(rows_of(3.1), Not(HasSubstr("slow, a robot")));
 }
 
 TEST(DriveLimits, MotorsFasterThanTheSpeedOfTheSettingsAreARow) {
