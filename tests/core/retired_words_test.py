@@ -109,6 +109,7 @@ ALLOWED = [
     ("least", "src/app/plan/problem_output.cc", r"^least$", CONTRACT),
     ("trust", "src/app/scoring/save_scored_run.cc", r"^trust$", "column of localizability.csv: contract"),
     ("way", "src/app/commands/slam_command.cc", r"^(odometry_)?way_m$", CONTRACT),
+    ("way", "src/app/mapping/mapped_log.h", r"^way_m$", CONTRACT),
     ("way", "src/app/mapping/mapping_page.cc", r"^(odometry_)?way_m$", CONTRACT),
     ("remote", "src/sim/teleop_operator.cc", r"^remote/hand$", STREAM),
     ("neighbour", "src/slam/submaps/neighbor_examples.cc", r"^slam/neighbour_examples$", STREAM),

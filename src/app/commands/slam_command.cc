@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,11 +11,9 @@
 #include "app/common/output_directory.h"
 #include "app/common/print_result.h"
 #include "app/common/process_cost.h"
-#include "app/mapping/consistency_report.h"
 #include "app/mapping/log_mapping.h"
+#include "app/mapping/mapped_log.h"
 #include "app/mapping/mapping_page.h"
-#include "app/mapping/odometry_report.h"
-#include "app/mapping/read_scans.h"
 #include "app/mapping/submap_graph_files.h"
 #include "app/record/run_directory.h"
 #include "core/thread_cpu_time.h"
@@ -30,11 +27,6 @@
 #include "io/yaml/settings_yaml.h"
 #include "report/page.h"
 #include "slam/calibration/calibration.h"
-#include "slam/consistency/frozen_scans.h"
-#include "slam/consistency/map_consistency.h"
-#include "slam/consistency/odometry_check.h"
-#include "slam/consistency/unsupported_path.h"
-#include "slam/planar_scan.h"
 
 namespace patrol::app {
 namespace {
@@ -46,61 +38,6 @@ const OutputKind kMapping = {.name = "mapping of a log",
                                          "settings.yaml", "report.html"},
                              .required_file = "settings.yaml",
                              .preserved = {"*.part"}};
-
-/// Computation time by segment of scans, which shows whether it grows with the map.
-class CostTable {
- public:
-  static constexpr std::size_t kScans = 200;  ///< scans per row of the table
-
-  void add(std::size_t num_scans, double way_m) {
-    if (num_scans % kScans != 0) return;
-    const double now_s = thread_cpu_time_s();
-    table_.rows.push_back({static_cast<double>(num_scans), way_m, 1e3 * (now_s - last_s_) / kScans, peak_memory_mb()});
-    last_s_ = now_s;
-  }
-  const io::Table& table() const { return table_; }
-
- private:
-  io::Table table_{.name = "performance", .columns = {"scans", "way_m", "ms_per_scan", "peak_memory_mb"}, .rows = {}};
-  double last_s_ = thread_cpu_time_s();
-};
-
-/// Data of the log in addition to the mapper's.
-struct MappedLog {
-  std::vector<Time> stamps;
-  std::vector<Pose2> T_odom_body;  ///< [scan], relative to the first
-  double way_m = 0.0;              ///< distance traveled, by odometry
-  slam::ConsistencyCheck consistency;
-  slam::FrozenScans frozen;
-  CostTable cost;
-
-  double duration_s() const { return stamps.empty() ? 0.0 : to_seconds(stamps.back() - stamps.front()); }
-};
-
-/// Maps a log; false if interrupted.
-bool map_log(io::ScanLog& log, const LogMappingSettings& settings, const std::string& name, slam::Mapper& mapper,
-             MappedLog& mapped) {
-  InterruptGuard guard;
-  ProgressBar bar;
-  slam::CalibratedScans calibrated(settings.calibration);
-  std::optional<Pose2> T_first_odom, T_odom_last;
-  const bool is_whole = read_scans(log, name, guard, bar, [&](RecordedScan& recorded) {
-    mapped.frozen.add(recorded);
-    calibrated.correct(recorded);
-    const LevelScan scan = slam::planar_scan(recorded, settings.scan);
-    mapped.consistency.add(scan, mapper.update(scan, recorded.T_odom_body));
-    if (!T_first_odom) T_first_odom = recorded.T_odom_body.inverse();
-    if (T_odom_last) mapped.way_m += (recorded.T_odom_body.position() - T_odom_last->position()).norm();
-    T_odom_last = recorded.T_odom_body;
-    mapped.stamps.push_back(recorded.scan.stamp);
-    mapped.T_odom_body.push_back(*T_first_odom * recorded.T_odom_body);
-    mapped.cost.add(mapped.stamps.size(), mapped.way_m);
-  });
-  if (!is_whole) return false;
-  bar.show(fmt::format("{}  {} scans, final optimization", name, mapped.stamps.size()));
-  mapper.finish();
-  return !guard.is_interrupted();
-}
 
 /// Trajectory with one pose per scan, in the log's order; duplicate stamps are kept.
 Trajectory trajectory_of(const std::vector<Time>& stamps, const std::vector<Pose2>& poses) {
@@ -120,7 +57,7 @@ io::Metrics metrics_of(const io::ScanLogSummary& summary, const MappedLog& mappe
        {{"scans", mapped.stamps.size()},
         {"skipped", num_skipped},
         {"duration_s", mapped.duration_s()},
-        {"odometry_way_m", mapped.way_m}}},
+        {"odometry_way_m", mapped.distance_m}}},
       {"path", {{"poses", estimate.size()}, {"way_m", planar_length_m(estimate)}}},
       {"graph",
        {{"nodes", graph.T_map_node.size()}, {"edges", graph.edges.size()}, {"cross_submap_edges", num_cross_submap}}}};
@@ -190,21 +127,11 @@ ExitCode slam_command(const SlamOptions& options) {
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
   metrics["log"]["range_std_m"] = settings.range_std_m;
-  std::vector<slam::UnmatchedSegment> frozen = mapped.frozen.find(path);
-  const OdometryReport odometry{.health = slam::check_odometry(mapped.T_odom_body, path, mapped.stamps),
-                                .stamps = mapped.stamps,
-                                .num_frozen_scans = slam::num_scans_of(frozen)};
   std::vector<slam::Keyframe> earlier;
   if (submaps)
     earlier.assign(submaps->keyframes.begin(),
                    submaps->keyframes.begin() + static_cast<std::ptrdiff_t>(num_earlier_nodes));
-  ConsistencyReport consistency{.consistency = mapped.consistency.check(path, earlier), .stamps = mapped.stamps};
-  consistency.consistency.frozen = std::move(frozen);
-  std::vector<slam::UnsupportedPath>& unsupported = consistency.consistency.unsupported;
-  unsupported =
-      slam::find_unsupported_path(consistency.consistency.unmatched_segments, odometry.health.faulty, mapped.stamps);
-  std::ranges::copy(slam::find_unsupported_gaps(mapped.T_odom_body, path, mapped.stamps),
-                    std::back_inserter(unsupported));
+  const MappingChecks checks = check_mapping(mapped, path, earlier);
   const double took_s = wall_seconds() - wall_s;
   metrics["performance"] = {{"wall_s", took_s},
                             {"processor_s", thread_cpu_time_s() - thread_s},
@@ -213,8 +140,8 @@ ExitCode slam_command(const SlamOptions& options) {
   metrics["loop_closures"] = to_metrics(mapper->loop_closure_statistics());
   metrics["earlier_map"] =
       options.earlier_map ? io::Metrics{{"located", mapper->is_located()}, {"nodes", num_earlier_nodes}} : nullptr;
-  metrics["consistency"] = consistency.metrics();
-  metrics["odometry"] = odometry.metrics();
+  metrics["consistency"] = checks.consistency.metrics();
+  metrics["odometry"] = checks.odometry.metrics();
   io::save_metrics(options.out / "metrics.json", metrics);
   const MappingContents contents{.log = file.filename().string(),
                                  .method = settings.slam.method,
@@ -222,19 +149,19 @@ ExitCode slam_command(const SlamOptions& options) {
                                  .estimate = estimate,
                                  .cost = mapped.cost.table(),
                                  .metrics = metrics,
-                                 .consistency = consistency,
-                                 .odometry = odometry};
+                                 .consistency = checks.consistency,
+                                 .odometry = checks.odometry};
   io::save_text(options.out / "report.html", report::to_html(mapping_page(contents)));
   complete_output(options.out);
 
   const std::string text = fmt::format(
       "{}{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
       "{} edges, {} of them to other submaps\n{}{}\n{}\n{}\n",
-      io::to_text(log->summary()), adaptation, mapped.stamps.size(), mapped.way_m, settings.slam.method, took_s,
+      io::to_text(log->summary()), adaptation, mapped.stamps.size(), mapped.distance_m, settings.slam.method, took_s,
       mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
       metrics["graph"]["cross_submap_edges"].get<std::size_t>(),
-      earlier_map_line(options, mapper->is_located(), num_earlier_nodes, graph.T_map_node.size()), consistency.line(),
-      odometry.line(), (options.out / "map.yaml").string());
+      earlier_map_line(options, mapper->is_located(), num_earlier_nodes, graph.T_map_node.size()),
+      checks.consistency.line(), checks.odometry.line(), (options.out / "map.yaml").string());
   print_result(options.form, text, metrics);
   return ExitCode::kDone;
 }

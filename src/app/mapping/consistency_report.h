@@ -23,9 +23,9 @@ struct ConsistencyReport {
   report::VerdictBlock block() const;
   /// Places of the largest disagreements and, if too many scans are unmatched, of most of them in a row.
   std::vector<report::MapMark> marks() const;
+  MappingVerdict verdict() const;
 
  private:
-  MappingVerdict verdict() const;
   double seconds(std::size_t scan) const;
 };
 

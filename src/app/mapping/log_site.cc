@@ -1,14 +1,18 @@
 #include "app/mapping/log_site.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/mapping/log_mapping.h"
+#include "app/mapping/mapped_log.h"
 #include "app/mapping/read_scans.h"
 #include "core/error.h"
+#include "core/map_cells.h"
 #include "importer/site/free_space.h"
 #include "importer/site/plan_site.h"
 #include "importer/site/wall_segments.h"
@@ -18,20 +22,34 @@
 namespace patrol::app {
 namespace {
 
-/// Calls `use` with every scan of the log; false if interrupted. `warnings`: those of the reader.
-template <typename Use>
-bool for_each_scan(const std::filesystem::path& file, const LogMappingSettings& settings, const std::string& label,
-                   std::vector<std::string>& warnings, Use&& use) {
+/// Adds the hits of the scans of a log at their mapped poses, [scan]; false if interrupted.
+bool add_hits(const std::filesystem::path& file, const LogMappingSettings& settings,
+              const std::vector<Pose2>& T_map_body, importer::WallFitter& walls) {
   const InterruptGuard guard;
   ProgressBar bar;
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
   slam::CalibratedScans calibrated(settings.calibration);
-  const bool is_whole = read_scans(*log, label, guard, bar, [&](RecordedScan& recorded) {
+  std::size_t index = 0;
+  return read_scans(*log, "walls", guard, bar, [&](RecordedScan& recorded) {
+    if (index >= T_map_body.size()) return;
+    const Pose2& pose = T_map_body[index++];
     calibrated.correct(recorded);
-    use(slam::planar_scan(recorded, settings.scan), recorded.T_odom_body);
+    const LevelScan scan = slam::planar_scan(recorded, settings.scan);
+    for (const LevelScan::Beam& beam : scan.beams) {
+      if (beam.is_hit) walls.add(pose * beam.end_m.cast<double>(), pose * scan.origin_m);
+    }
   });
-  warnings = log->summary().warnings;
-  return is_whole;
+}
+
+/// Adds the assumptions and errors of the reader, and the checks of the map that failed.
+void add_log_rows(const io::ScanLogSummary& summary, const MappingChecks& checks, importer::ImportedSite& site) {
+  for (const std::string& warning : summary.warnings) site.assumptions.push_back({"log", warning, ""});
+  for (const auto& [assumption, num_scans] : summary.assumed)
+    site.assumptions.push_back({"log", fmt::format("{} {}", num_scans, assumption), ""});
+  for (const MappingVerdict& verdict : {checks.consistency.verdict(), checks.odometry.verdict()}) {
+    if (verdict.tone != report::Tone::kGood)
+      site.assumptions.push_back({"map of the log", verdict.line() + " (patrol slam shows the details)", ""});
+  }
 }
 
 /// Gives the site the recorded path as its mission, with stations at most every 5 m and at most 100 of them.
@@ -62,25 +80,17 @@ std::optional<importer::ImportedSite> import_log_site(const importer::SiteImport
   LogMappingSettings settings;
   adapt_to_log(options.file, settings);
   const std::unique_ptr<slam::Mapper> mapper = make_log_mapper(settings);
-  std::vector<std::string> warnings;
-  if (!for_each_scan(options.file, settings, "mapping", warnings,
-                     [&](const LevelScan& scan, const Pose2& T_odom_body) { mapper->update(scan, T_odom_body); }))
-    return std::nullopt;
-  mapper->finish();
+  const std::unique_ptr<io::ScanLog> log = io::open_scan_log(options.file, settings.log);
+  MappedLog mapped;
+  if (!map_log(*log, settings, "mapping", *mapper, mapped)) return std::nullopt;
   const OccupancyGrid plan = mapper->map();
   const std::vector<Pose2> path = mapper->path();
+  if (std::none_of(plan.values().begin(), plan.values().end(), is_occupied))
+    throw InputError(options.file.string() + ": the map of the log has no occupied cell");
   importer::WallFitter walls(plan);
-  std::size_t index = 0;
-  const auto add_hits = [&](const LevelScan& scan, const Pose2&) {
-    if (index >= path.size()) return;
-    const Pose2& T_map_body = path[index++];
-    for (const LevelScan::Beam& beam : scan.beams) {
-      if (beam.is_hit) walls.add(T_map_body * beam.end_m.cast<double>(), T_map_body * scan.origin_m);
-    }
-  };
-  if (!for_each_scan(options.file, settings, "walls", warnings, add_hits)) return std::nullopt;
-  importer::ImportedSite site = importer::site_of_walls(plan, walls, options.file.filename().string(), options);
-  for (const std::string& warning : warnings) site.assumptions.push_back({"log", warning, ""});
+  if (!add_hits(options.file, settings, path, walls)) return std::nullopt;
+  importer::ImportedSite site = importer::site_of_walls(plan, walls, options);
+  add_log_rows(log->summary(), check_mapping(mapped, path, {}), site);
   importer::MissionOptions mission = options.mission;
   if (!mission.start && !path.empty()) mission.start = path.front(), mission.start_is_recorded = true;
   if (mission.start) site.T_site_start = *mission.start;

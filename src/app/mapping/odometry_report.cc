@@ -15,6 +15,8 @@ constexpr std::size_t kListedFaults = 20;  ///< places in metrics.json
 constexpr std::size_t kShownFaults = 8;    ///< places on the page
 /// More faulty segments than this are worth a warning; from kMostly on, a fault is named as a property of the log.
 constexpr double kMaxFaulty = 0.05, kMostly = 0.5;
+/// Fraction of scans without a match above which the path is mostly that of odometry.
+constexpr double kMaxUnmatched = 0.5;
 /// Scales further from 1, and a steering bias larger than this, are worth a warning.
 constexpr double kMaxScaleError = 0.03, kMaxSteering_radpm = 0.02;
 /// Smaller standard deviations are rounding errors: the path is that of odometry.
@@ -60,6 +62,10 @@ io::Metrics to_metrics(const std::optional<slam::OdometryScale>& scale) {
 
 double OdometryReport::seconds(std::size_t scan) const { return to_seconds(stamps.at(scan) - stamps.front()); }
 
+bool OdometryReport::is_mostly_unmatched() const {
+  return static_cast<double>(num_unmatched_scans) > kMaxUnmatched * static_cast<double>(stamps.size());
+}
+
 MappingVerdict OdometryReport::verdict() const {
   if (health.num_segments == 0) {
     return {.word = "odometry not checked",
@@ -76,6 +82,12 @@ MappingVerdict OdometryReport::verdict() const {
     return {.word = "odometry not checked",
             .tone = report::Tone::kWarning,
             .reason = "the scans determine no motion, the path is that of odometry"};
+  }
+  if (is_mostly_unmatched()) {
+    return {.word = "odometry not checked",
+            .tone = report::Tone::kWarning,
+            .reason = fmt::format("{} of {} scans matched no surfaces, the path there is that of odometry",
+                                  num_unmatched_scans, stamps.size())};
   }
   const std::string scales = fmt::format("scale of distance {}, of turn {}, steering {}", text(health.distance),
                                          text(health.turn), text(health.steering, " rad per m"));
@@ -135,7 +147,7 @@ io::Metrics OdometryReport::metrics() const {
   io::Metrics by_fault;
   const Distances distances = distances_by_fault(health);
   for (std::size_t k = 0; k < distances.size(); ++k) by_fault[fault_name(k) + "_m"] = distances[k];
-  const bool is_checked = !is_path_of_odometry(health);
+  const bool is_checked = !is_path_of_odometry(health) && !is_mostly_unmatched();
   const auto scale_metrics = [&](const std::optional<slam::OdometryScale>& scale) {
     return is_checked ? to_metrics(scale) : io::Metrics();
   };

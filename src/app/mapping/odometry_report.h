@@ -15,16 +15,18 @@ namespace patrol::app {
 /// Health of the odometry of a log, as told to the user. Times are seconds since the first scan, positions are in map.
 struct OdometryReport {
   slam::OdometryHealth health;
-  std::vector<Time> stamps;          ///< [scan]
-  std::size_t num_frozen_scans = 0;  ///< scans of a frozen lidar (slam/consistency/frozen_scans.h)
+  std::vector<Time> stamps;             ///< [scan]
+  std::size_t num_frozen_scans = 0;     ///< scans of a frozen lidar (slam/consistency/frozen_scans.h)
+  std::size_t num_unmatched_scans = 0;  ///< scans that matched no surfaces of the map, or have no returns
 
   /// Result in one line: "odometry agrees: ...", "odometry is mostly constant: ..." and others.
   std::string line() const;
   io::Metrics metrics() const;
   report::VerdictBlock block() const;
+  MappingVerdict verdict() const;
 
  private:
-  MappingVerdict verdict() const;
+  bool is_mostly_unmatched() const;
   double seconds(std::size_t scan) const;
 };
 

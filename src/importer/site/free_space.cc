@@ -16,23 +16,42 @@
 namespace patrol::importer {
 namespace {
 
-constexpr double kAccuracy_m = 0.3;  // position tolerance of a station
+constexpr double kAccuracy_m = 0.3;   // position tolerance of a station
+constexpr double kRounding_m = 1e-9;  // of clearances
 
-/// Returns the squared distance of each cell to the next cell that is not free, in cells.
-std::vector<double> squared_clearances(const OccupancyGrid& plan) {
+/// Returns the distance from the center of each cell to the face of the nearest cell that is not free, m. Negative: the
+/// cell is not free itself. Across the corner of a cell, the distance is up to 0.2 cells more.
+std::vector<double> clearances_m(const OccupancyGrid& plan) {
   std::vector<std::uint8_t> is_blocked(plan.geometry().size());
   std::transform(plan.values().begin(), plan.values().end(), is_blocked.begin(),
                  [](std::int8_t percent) { return static_cast<std::uint8_t>(is_free(percent) ? 0 : 1); });
-  return squared_distances(is_blocked, plan.geometry().width, plan.geometry().height);
+  std::vector<double> result = squared_distances(is_blocked, plan.geometry().width, plan.geometry().height);
+  for (double& value : result) value = (std::sqrt(value) - 0.5) * plan.geometry().resolution_m;
+  return result;
 }
 
-/// Returns the cells with enough clearance to the next cell that is not free.
+/// Returns the cells with enough clearance to the nearest cell that is not free.
 Grid<std::uint8_t> cells_with_clearance(const OccupancyGrid& plan, double min_clearance_m) {
-  const std::vector<double> squared = squared_clearances(plan);
-  const double min_cells = min_clearance_m / plan.geometry().resolution_m;
+  const std::vector<double> clearance_m = clearances_m(plan);
   Grid<std::uint8_t> result(plan.geometry());
-  for (std::size_t i = 0; i < squared.size(); ++i) result.values()[i] = squared[i] >= min_cells * min_cells ? 1 : 0;
+  std::transform(clearance_m.begin(), clearance_m.end(), result.values().begin(),
+                 [&](double distance_m) { return distance_m >= min_clearance_m - kRounding_m ? 1 : 0; });
   return result;
+}
+
+/// Returns the distance from a position to the nearest cell that is not free, at most `max_m`.
+double clearance_at(const OccupancyGrid& plan, const Eigen::Vector2d& p_m, double max_m) {
+  const GridGeometry& grid = plan.geometry();
+  const Cell low = grid.cell_at(p_m.array() - max_m), high = grid.cell_at(p_m.array() + max_m);
+  double clearance_m = max_m;
+  for (int row = std::max(low.row, 0); row <= std::min(high.row, grid.height - 1); ++row) {
+    for (int col = std::max(low.col, 0); col <= std::min(high.col, grid.width - 1); ++col) {
+      if (is_free(plan.at({col, row}))) continue;
+      const Eigen::Array2d to_center = (grid.center_of({col, row}) - p_m).array().abs();
+      clearance_m = std::min(clearance_m, (to_center - 0.5 * grid.resolution_m).max(0.0).matrix().norm());
+    }
+  }
+  return clearance_m;
 }
 
 /// Marks the cells connected to `from` with `label`, and returns their area. Cells of the value 1 are open.
@@ -127,22 +146,16 @@ Eigen::Vector2d FreeSpace::nearest(const Eigen::Vector2d& p_m) const {
   return grid_.center_of(*nearest_open(region_, p_m));
 }
 
-ClearanceCheck::ClearanceCheck(const OccupancyGrid& plan, double min_clearance_m)
-    : plan_(plan), min_clearance_m_(min_clearance_m), clearance_m_(plan.geometry()) {
-  const std::vector<double> squared = squared_clearances(plan);
-  std::transform(squared.begin(), squared.end(), clearance_m_.values().begin(),
-                 [&](double cells) { return std::sqrt(cells) * plan.geometry().resolution_m; });
-}
-
-std::optional<std::string> ClearanceCheck::problem_at(const Eigen::Vector2d& p_m) const {
-  const Cell cell = plan_.geometry().cell_at(p_m);
-  if (!plan_.geometry().contains(cell)) return "outside the floor plan";
-  if (is_occupied(plan_.at(cell))) return "in a wall or an obstacle of the floor plan";
-  if (!is_free(plan_.at(cell))) return "not on the free ground of the floor plan";
-  const double clearance_m = clearance_m_.at(cell);
-  if (clearance_m >= min_clearance_m_) return std::nullopt;
+std::optional<std::string> clearance_problem(const OccupancyGrid& plan, double min_clearance_m,
+                                             const Eigen::Vector2d& p_m) {
+  const Cell cell = plan.geometry().cell_at(p_m);
+  if (!plan.geometry().contains(cell)) return "outside the floor plan";
+  if (is_occupied(plan.at(cell))) return "in a wall or an obstacle of the floor plan";
+  if (!is_free(plan.at(cell))) return "not on the free ground of the floor plan";
+  const double clearance_m = clearance_at(plan, p_m, min_clearance_m);
+  if (clearance_m >= min_clearance_m - kRounding_m) return std::nullopt;
   return fmt::format("{:.2f} m from walls or unknown space: the robot needs at least {:.2f} m", clearance_m,
-                     min_clearance_m_);
+                     min_clearance_m);
 }
 
 std::vector<Station> random_stations(const FreeSpace& space, const Pose2& start, int count, std::uint64_t seed,

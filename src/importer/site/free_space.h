@@ -39,20 +39,10 @@ class FreeSpace {
 /// Returns the area of the free cells with at least `min_clearance_m` to cells that are occupied or unknown, m2.
 double area_with_clearance_m2(const OccupancyGrid& plan, double min_clearance_m);
 
-/// Checks whether a robot can stand at a position of a floor plan.
-class ClearanceCheck {
- public:
-  /// `min_clearance_m`: minimum distance to cells that are occupied or unknown.
-  ClearanceCheck(const OccupancyGrid& plan, double min_clearance_m);
-
-  /// Returns the problem of a position, such as "outside the floor plan"; none if a robot can stand there.
-  std::optional<std::string> problem_at(const Eigen::Vector2d& p_m) const;
-
- private:
-  OccupancyGrid plan_;
-  double min_clearance_m_;
-  Grid<double> clearance_m_;  ///< distance to the nearest cell that is not free
-};
+/// Returns why a robot cannot stand at a position of a floor plan, such as "outside the floor plan"; none if it can.
+/// `min_clearance_m`: minimum distance to cells that are occupied or unknown.
+std::optional<std::string> clearance_problem(const OccupancyGrid& plan, double min_clearance_m,
+                                             const Eigen::Vector2d& p_m);
 
 /// Returns `count` stations at random cells of a region, at least `separation_m` apart while there is room, half of it
 /// when 100 draws found none, and so on. Each faces away from the one before; the first one from the start. A last

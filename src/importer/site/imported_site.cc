@@ -78,8 +78,8 @@ void write_mission(const ImportedSite& site, const std::filesystem::path& folder
       fmt::format("# Patrol of {} stations, made by patrol import site from {}.\nworld: {}\nrobot: {}\n"
                   "mission: routes/patrol.json\n{}stack:\n  mission_type: gas  # stations of the mission file\n{}"
                   "expect:\n  mission.completed: true\n  mission.collisions: {{max: 0}}\n",
-                  site.route->stations.size(), io::on_one_line(site.source), yaml_text(site.name),
-                  yaml_text(site.robot), site.scenario_keys, site.stack_keys));
+                  site.route->stations.size(), site.source_name(), yaml_text(site.name), yaml_text(site.robot),
+                  site.scenario_keys, site.stack_keys));
 }
 
 void check(const ImportedSite& site) {
@@ -140,6 +140,10 @@ sim::ModelPtr compile_site(const ImportedSite& site) {
   return checked_model(site, output.staging());
 }
 
+std::string ImportedSite::source_name() const {
+  return io::on_one_line(std::filesystem::path(source).filename().string());
+}
+
 std::string report_of(const ImportedSite& site, const std::vector<Assumption>& assumptions) {
   std::size_t triangles = 0, solid = 0;
   for (const SiteShape& shape : site.shapes) {
@@ -152,7 +156,7 @@ std::string report_of(const ImportedSite& site, const std::vector<Assumption>& a
   return fmt::format(
              "# {}\n\nMade by `patrol import site` from `{}`: {}. `patrol site {}` reports the ground and the "
              "obstacles.\n\n## Assumptions\n\n",
-             io::on_one_line(site.name), io::on_one_line(site.source), content, site.name) +
+             io::on_one_line(site.name), site.source_name(), content, site.name) +
          to_markdown(assumptions, "None: the file determines the site.\n");
 }
 

@@ -78,7 +78,7 @@ struct SiteFile {
 /// Site in Patrol's form, not yet written. All poses are in the frame `site`, z up.
 struct ImportedSite {
   std::string name;       ///< name of the site, its folder and its files
-  std::string source;     ///< file that it was read from
+  std::string source;     ///< path of the file that it was read from
   std::string mjcf = {};  ///< model of the site, which replaces materials and shapes; empty: made of these
   std::vector<SiteMaterial> materials = {};
   std::vector<SiteShape> shapes = {};
@@ -92,6 +92,9 @@ struct ImportedSite {
   std::string robot = "wheeled";              ///< robot of the scenario
   std::optional<double> lidar_height_m = {};  ///< height of the robot's lidar above the ground; none: without a lidar
   std::vector<Assumption> assumptions = {};
+
+  /// Returns the name of the file without its folder, on one line.
+  std::string source_name() const;
 };
 
 /// Makes the height fields with contact ground of the site: on a slope, the wheels of a robot are at different heights.

@@ -154,7 +154,7 @@ std::vector<SiteShape> seen_shapes(const MeshScene& scene, const std::string& na
 
 ImportedSite read_mesh_site(const SiteImportOptions& options) {
   MeshScene scene = read_mesh_scene(options.file);
-  ImportedSite site{.name = options.name, .source = options.file.filename().string()};
+  ImportedSite site{.name = options.name, .source = options.file.string()};
   const SceneFrame frame = frame_of(scene, options.scale, options.up);
   to_site_axes(scene, frame);
   site.assumptions = frame.rows;

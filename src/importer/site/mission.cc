@@ -98,7 +98,7 @@ RegionReasons require_plan(const MissionOptions& options, const std::optional<Ei
 void check_start(const MissionOptions& options, const ImportedSite& site) {
   if (!options.start || options.start_is_recorded) return;
   const Pose2& start = *options.start;
-  if (const auto problem = ClearanceCheck(*site.map, options.clearance_m).problem_at(start.position()))
+  if (const auto problem = clearance_problem(*site.map, options.clearance_m, start.position()))
     throw InputError(fmt::format("--start {:g},{:g}: {}", start.x, start.y, *problem));
 }
 
@@ -140,11 +140,11 @@ void add_table_mission(const MissionOptions& options, ImportedSite& site) {
     throw station_error(options, rows.front(), error.what());
   }
   check_start(options, site);
-  const ClearanceCheck check(*site.map, options.clearance_m);
   const FreeSpace connected(*site.map, 0.5 * site.map->geometry().resolution_m, start.position());
   for (const io::TourStation& row : rows) {
     const Eigen::Vector2d p(row.x, row.y);
-    if (const auto problem = check.problem_at(p)) throw station_error(options, row, *problem);
+    if (const auto problem = clearance_problem(*site.map, options.clearance_m, p))
+      throw station_error(options, row, *problem);
     if (!connected.contains(p))
       throw station_error(options, row, "not connected to the start by free ground of the floor plan");
   }

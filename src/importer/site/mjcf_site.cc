@@ -177,7 +177,7 @@ class MjcfCopy {
 }  // namespace
 
 ImportedSite read_mjcf_site(const SiteImportOptions& options) {
-  ImportedSite site{.name = options.name, .source = options.file.filename().string()};
+  ImportedSite site{.name = options.name, .source = options.file.string()};
   site.mjcf = MjcfCopy(options.file, site).text();
   site.assumptions.push_back(
       {"ground",

@@ -40,10 +40,10 @@ void add_cells(const GridGeometry& grid, const std::function<bool(Cell)>& is_sel
   }
 }
 
-ImportedSite empty_site(const OccupancyGrid& plan, const std::string& source, const SiteImportOptions& options) {
+ImportedSite empty_site(const OccupancyGrid& plan, const SiteImportOptions& options) {
   constexpr double kMargin_m = 5.0;
   const GridGeometry& grid = plan.geometry();
-  ImportedSite site{.name = options.name, .source = source};
+  ImportedSite site{.name = options.name, .source = options.file.string()};
   site.materials = {{.name = "floor", .rgba = {0.55, 0.55, 0.53, 1.0}},
                     {.name = "wall", .rgba = {0.82, 0.80, 0.76, 1.0}}};
   const Eigen::Vector2d half_m = 0.5 * grid.resolution_m * Eigen::Vector2d(grid.width, grid.height);
@@ -68,7 +68,7 @@ ImportedSite read_plan_site(const SiteImportOptions& options) {
   if (options.mission.start && options.mission.stations.empty() && options.mission.num_random == 0)
     throw InputError("--start: a floor plan has a start only with --stations or --random-stations");
   const OccupancyGrid plan = io::load_map(options.file);
-  ImportedSite site = empty_site(plan, options.file.filename().string(), options);
+  ImportedSite site = empty_site(plan, options);
   add_cells(
       plan.geometry(), [&](Cell cell) { return is_occupied(plan.at(cell)); }, options, site);
   if (site.shapes.size() == 1) throw InputError(options.file.string() + ": the plan has no occupied cell");
@@ -78,9 +78,8 @@ ImportedSite read_plan_site(const SiteImportOptions& options) {
   return site;
 }
 
-ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, const std::string& source,
-                           const SiteImportOptions& options) {
-  ImportedSite site = empty_site(plan, source, options);
+ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, const SiteImportOptions& options) {
+  ImportedSite site = empty_site(plan, options);
   for (const WallSegment& segment : walls.segments()) {
     const Eigen::Vector2d along = segment.end_m - segment.begin_m;
     const Eigen::Vector2d center = 0.5 * (segment.begin_m + segment.end_m) - 0.5 * segment.thickness_m * segment.normal;

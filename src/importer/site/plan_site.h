@@ -11,8 +11,7 @@ namespace patrol::importer {
 ImportedSite read_plan_site(const SiteImportOptions& options);
 
 /// Returns the site of a floor plan of which a lidar saw the walls: the faces of `walls` instead of the cells that they
-/// cover. `source` is named in the report.
-ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, const std::string& source,
-                           const SiteImportOptions& options);
+/// cover.
+ImportedSite site_of_walls(const OccupancyGrid& plan, const WallFitter& walls, const SiteImportOptions& options);
 
 }  // namespace patrol::importer

@@ -42,11 +42,6 @@ std::string name_of_class(std::size_t i) { return fmt::format("measured_{:02.0f}
 /// Meters per unit of the file.
 double unit_of_points(const SiteImportOptions& options) { return options.scale > 0.0 ? options.scale : 1.0; }
 
-/// Returns the start of error messages: the file with its folder.
-std::string error_location(const SiteImportOptions& options, const std::string& source) {
-  return options.file.empty() ? source : options.file.string();
-}
-
 /// Rotation from the frame of the file to z up.
 Eigen::Matrix3d upright(const SiteImportOptions& options) {
   if (options.up != "y") return Eigen::Matrix3d::Identity();
@@ -282,7 +277,7 @@ ImportedSite site_of_panoramas(SortedScans& scans, const Eigen::Vector3d& origin
       {"moving objects",
        fmt::format("{} points that another scan looks through and none observes are removed", counts.num_moving), ""});
   site.assumptions.push_back({"reflectivity", scale.rule + ", divided by the cosine of incidence", ""});
-  const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, error_location(options, source));
+  const ScannedGround ground = find_scanned_ground(patches, scanners_m, true, {}, source);
   add_ground_row(site, "the surface around the scanners and what is connected by steps of at most 0.12 m", ground);
   progress("close thin objects", 0.7);
   const std::vector<Patch> sides = close_thin_objects(patches, panoramas, ground, {});
@@ -300,13 +295,13 @@ ImportedSite site_of_panoramas(SortedScans& scans, const Eigen::Vector3d& origin
 
 ImportedSite read_scans_site(const SiteImportOptions& options) {
   progress_of(options)("read scans", 0.0);
-  const std::string source = options.file.filename().string(), location = options.file.string();
+  const std::string source = options.file.string();
   const double unit_m = unit_of_points(options);
   if (std::filesystem::is_directory(options.file))
     return site_of_scans(io::load_relative_scans(options.file, unit_m), source, options);
   io::E57Scans file = io::load_e57(options.file, unit_m);
-  if (file.scans.scans.empty()) throw InputError(location + ": has no points");
-  check_precision(file.scans.origin, file.step, location, unit_m);
+  if (file.scans.scans.empty()) throw InputError(source + ": has no points");
+  check_precision(file.scans.origin, file.step, source, unit_m);
   std::string reason = "a scan has no pose";
   if (file.has_scanners) {
     SortedScans sorted = sort_with_progress(file.scans.scans, options);
@@ -322,20 +317,19 @@ ImportedSite read_scans_site(const SiteImportOptions& options) {
 
 ImportedSite read_cloud_site(const SiteImportOptions& options) {
   progress_of(options)("read points", 0.0);
-  return site_of_cloud(io::load_points(options.file, {}, unit_of_points(options)), options.file.filename().string(),
-                       options);
+  return site_of_cloud(io::load_points(options.file, {}, unit_of_points(options)), options.file.string(), options);
 }
 
 ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options) {
-  if (scans.scans.empty()) throw InputError(error_location(options, source) + ": has no scans");
+  if (scans.scans.empty()) throw InputError(source + ": has no scans");
   SortedScans sorted = sort_with_progress(scans.scans, options);
-  if (!sorted.problem.empty()) throw InputError(fmt::format("{}: {}", error_location(options, source), sorted.problem));
+  if (!sorted.problem.empty()) throw InputError(fmt::format("{}: {}", source, sorted.problem));
   return site_of_panoramas(sorted, scans.origin, scans.num_dropped, source, options);
 }
 
 ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, const SiteImportOptions& options) {
   const auto progress = progress_of(options);
-  check_precision(cloud.origin, cloud.step, error_location(options, source), unit_of_points(options));
+  check_precision(cloud.origin, cloud.step, source, unit_of_points(options));
   progress("find surfaces", 0.3);
   ImportedSite site{.name = options.name, .source = source};
   transform(cloud.points, unit_of_points(options) * upright(options));
@@ -345,8 +339,8 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
       [&](float intensity) {
         return scale.is_known() ? scale.light_of(intensity) : static_cast<float>(kUnknownReflectivity);
       },
-      error_location(options, source));
-  check_points_on_surfaces(cloud, found, error_location(options, source));
+      source);
+  check_points_on_surfaces(cloud, found, source);
   add_frame_rows(site, cloud.origin, cloud.num_dropped, options);
   if (!cloud.columns.empty()) site.assumptions.push_back({"columns", cloud.columns, "a first line with their names"});
   site.assumptions.push_back(
@@ -363,9 +357,9 @@ ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, 
       {"normals", "surfaces face the nearest place where a person can stand, 1.5 m above the ground", ""});
   site.assumptions.push_back({"reflectivity", scale.rule + ", at any incidence", ""});
   progress("find the ground", 0.8);
-  const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, error_location(options, source));
+  const ScannedGround ground = find_scanned_ground(found.patches, {}, false, {}, source);
   add_ground_row(site, "the lowest large level surface and what is connected by steps of at most 0.12 m", ground);
-  check_below(site, ground, found.patches, error_location(options, source));
+  check_below(site, ground, found.patches, source);
   orient(found.patches, ground);
   constexpr double kUnseenExtent_m = 0.6;  // without beams, only small convex hulls are likely
   std::vector<Panorama> no_scans;

@@ -18,10 +18,10 @@ ImportedSite read_scans_site(const SiteImportOptions& options);
 /// Throws InputError if the file is invalid or its points form no surface.
 ImportedSite read_cloud_site(const SiteImportOptions& options);
 
-/// Returns the site of scans, which are consumed.
+/// Returns the site of scans, which are consumed. `source`: file or name of the scans, for reports and errors.
 ImportedSite site_of_scans(io::RelativeScans scans, const std::string& source, const SiteImportOptions& options);
 
-/// Returns the site of a point cloud, which is consumed.
+/// Returns the site of a point cloud, which is consumed. `source`: as for scans.
 ImportedSite site_of_cloud(io::RelativePoints cloud, const std::string& source, const SiteImportOptions& options);
 
 }  // namespace patrol::importer

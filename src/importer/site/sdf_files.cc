@@ -14,6 +14,8 @@
 #include <tinyxml2.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
+#include "importer/site/fuel_models.h"
 #include "importer/xacro.h"
 #include "importer/xml_elements.h"
 #include "io/files/atomic_file.h"
@@ -85,8 +87,8 @@ const SdfFiles::File& SdfFiles::add(File file) {
   open_.push_back(file.path);
   for (tinyxml2::XMLElement* include : file.source->includes()) {
     const int line = include->GetLineNum();
-    // Without <uri>, libsdformat refuses it.
-    if (include->FirstChildElement("uri") != nullptr) take(*file.source, *include, file.num_models);
+    if (include->FirstChildElement("uri") == nullptr) file.source->fail(*include, "has no <uri>");
+    take(*file.source, *include, file.num_models);
     if (file.num_models > kMaxModels)
       throw InputError(fmt::format("{}: <include>: {} models: must be at most {}", file.source->location(line),
                                    file.num_models, kMaxModels));
@@ -126,7 +128,7 @@ std::optional<std::filesystem::path> SdfFiles::resolve(const SdfSource& source, 
   const std::string uri = trimmed(element.GetText());
   auto path = models_.find_uri(uri, std::filesystem::absolute(source.file()).parent_path());
   std::error_code error;
-  if (!path && uri == std::string(kModelScheme) + name_in(uri)) path = built_in(name_in(uri));
+  if (!path) path = built_in(uri);
   if (!is_of_network(uri) && (!path || !std::filesystem::exists(*path, error))) {
     // The folders that libsdformat searches: the working directory and those of SDF_PATH.
     if (const std::string found = sdf::findFile(uri, true, false); !found.empty()) path = found;
@@ -145,13 +147,23 @@ std::optional<std::filesystem::path> SdfFiles::resolve(const SdfSource& source, 
   return std::filesystem::absolute(*path).lexically_normal();
 }
 
-std::optional<std::filesystem::path> SdfFiles::built_in(const std::string& name) {
+std::optional<std::filesystem::path> SdfFiles::built_in(const std::string& uri) {
+  std::string name = name_in(uri);
+  if (const std::optional<FuelModel> model = fuel_model(uri)) {
+    const bool is_of_gazebo = model->owner.empty() || to_lower(model->owner) == "openrobotics";
+    if (!is_of_gazebo || !model->file.empty()) return std::nullopt;
+    name = to_lower(name);
+    std::replace(name.begin(), name.end(), ' ', '_');
+  } else if (uri != std::string(kModelScheme) + name) {
+    return std::nullopt;
+  }
   if (name != "ground_plane" && name != "sun") return std::nullopt;
   const std::filesystem::path file = folder_.path() / (name + ".sdf");
   if (std::filesystem::exists(file)) return file;
   io::save_text(file, name == "sun" ? kSun : kGroundPlane);
   if (name == "ground_plane")
-    rows_.push_back({"model://ground_plane", "no folder is given: the plane z = 0", "--package ground_plane=FOLDER"});
+    rows_.push_back({io::on_one_line(uri), "no folder is given: the plane z = 0",
+                     fmt::format("--package \"{}=FOLDER\"", name_in(uri))});
   return file;
 }
 

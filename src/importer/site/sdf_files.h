@@ -68,7 +68,8 @@ class SdfFiles {
   const File& add(File file);
   void take(SdfSource& source, tinyxml2::XMLElement& include, std::size_t& num_models);
   std::optional<std::filesystem::path> resolve(const SdfSource& source, const tinyxml2::XMLElement& uri);
-  std::optional<std::filesystem::path> built_in(const std::string& name);
+  /// Returns the file of the plain ground plane or the sun of Gazebo, as a model or from Fuel; none for other models.
+  std::optional<std::filesystem::path> built_in(const std::string& uri);
 
   const SiteImportOptions& options_;
   const SdfModels& models_;

@@ -199,7 +199,7 @@ class SdfSiteBuilder {
 
 ImportedSite read_sdf_site(const SiteImportOptions& options) {
   const SdfWorld world(options);
-  ImportedSite site{.name = options.name, .source = options.file.filename().string()};
+  ImportedSite site{.name = options.name, .source = options.file.string()};
   site.assumptions = world.rows();
   const std::vector<Assumption> ignored = check_elements(world);
   site.assumptions.insert(site.assumptions.end(), ignored.begin(), ignored.end());

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include "core/error.h"
+#include "core/letter_case.h"
 #include "core/settings.h"
 #include "io/files/atomic_file.h"
 #include "io/maps/map_image.h"
@@ -18,6 +21,7 @@ namespace patrol::io {
 namespace {
 
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
+constexpr double kYawRounding_rad = 1e-9;
 constexpr unsigned char kOccupiedPixel = 0, kFreePixel = 254, kUnknownPixel = 205;
 constexpr unsigned char kMaxError = 254, kNoError = 255;  // mm
 
@@ -68,18 +72,21 @@ struct MapFile {
 
 /// Reads the YAML file; `image` becomes a path relative to the working directory.
 MapFile load_map_file(const std::filesystem::path& file) {
-  const YAML::Node document = load_document(file, {});
-  const auto refuse = [&](const char* key, const std::string& what) {
+  YAML::Node document = load_document(file, {});
+  const auto refuse = [&document = std::as_const(document), &file](const char* key, const std::string& what) {
     const YAML::Node node = document[key];
     throw input_error(file.string(), node.IsDefined() ? line_of(node) : 0, fmt::format("{}: {}", key, what));
   };
   for (const char* key : {"image", "resolution", "origin"}) {
-    if (!document[key].IsDefined()) refuse(key, "is missing");
+    if (!std::as_const(document)[key].IsDefined()) refuse(key, "is missing");
   }
+  if (YAML::Node mode = std::as_const(document)["mode"]; mode.IsDefined() && mode.IsScalar())
+    mode = to_lower(mode.Scalar());
   MapFile map;
   SettingsReader::read_section(file.string(), document, "", map);
   if (map.origin.size() != 3) refuse("origin", "must be three numbers: x, y, yaw");
-  if (map.origin[2] != 0.0) refuse("origin", "rotated maps (yaw other than 0) are not supported");
+  if (std::abs(std::remainder(map.origin[2], 2.0 * std::numbers::pi)) > kYawRounding_rad)
+    refuse("origin", "rotated maps (yaw other than 0) are not supported");
   if (map.free_thresh > map.occupied_thresh) refuse("free_thresh", "must not be above occupied_thresh");
   if (map.mode == "scale" && map.free_thresh == map.occupied_thresh)
     refuse("free_thresh", "must be below occupied_thresh in mode scale");

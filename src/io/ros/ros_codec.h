@@ -14,6 +14,7 @@
 #include <fastcdr/FastBuffer.h>
 #include <fastcdr/exceptions/Exception.h>
 #include <fastcdr/exceptions/NotEnoughMemoryException.h>
+#include <fmt/format.h>
 
 #include "io/ros/coordinate_limit.h"
 #include "io/ros/ros_messages.h"
@@ -114,6 +115,21 @@ inline constexpr const char* kLaserScanFields =
     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
     "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n";
 
+/// Throws DecodeError if `angle_max_rad` is further than two increments from the angle of the last beam: drivers differ
+/// by one.
+inline void expect_angles(const LaserScan& scan, double angle_max_rad) {
+  constexpr double kIncrements = 2.0;
+  const auto num_steps = static_cast<double>(scan.ranges_m.size()) - 1.0;
+  if (num_steps < 1.0) return;
+  const double last_rad = scan.angle_min_rad + scan.angle_increment_rad * num_steps;
+  const double increment_rad = std::abs(scan.angle_increment_rad);
+  if (increment_rad > 0.0 && std::abs(angle_max_rad - last_rad) <= kIncrements * increment_rad) return;
+  throw DecodeError(
+      fmt::format("angle_max {:.4g} rad contradicts the angle of the last of {} beams, {:.4g} rad by angle_min and "
+                  "angle_increment",
+                  angle_max_rad, scan.ranges_m.size(), last_rad));
+}
+
 /// Scan of a 2D lidar whose frame is `frame`.
 template <typename Codec>
 void scan_fields(Codec& codec, LaserScan& scan, const char* frame) {
@@ -129,6 +145,7 @@ void scan_fields(Codec& codec, LaserScan& scan, const char* frame) {
   float_field(codec, scan.range_max_m);
   codec(scan.ranges_m);
   codec(scan.intensities);
+  if constexpr (!Codec::kWrites) expect_angles(scan, angle_max_rad);
 }
 
 template <typename Codec>

@@ -88,6 +88,7 @@ constexpr Time ms(int count) { return std::chrono::milliseconds(count); }
 RecordedScan scan_at(Time stamp, double x_m = 0.0) {
   RecordedScan recorded;
   recorded.scan.stamp = stamp;
+  recorded.scan.angle_increment_rad = 0.1;
   recorded.scan.ranges_m = {1.0F, 2.0F, 3.0F};
   recorded.T_odom_body = {x_m, 0.0, 0.0};
   recorded.T_body_lidar = {0.2, 0.0, 0.0};

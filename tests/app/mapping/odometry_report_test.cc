@@ -96,6 +96,16 @@ TEST(OdometryReport, WithAFrozenLidarOverATenthOfTheScansIsNotChecked) {
   EXPECT_EQ(result.block().word, "odometry agrees");
 }
 
+TEST(OdometryReport, WithMoreThanHalfOfTheScansUnmatchedIsNotChecked) {
+  OdometryReport result = report_of(healthy());
+  result.num_unmatched_scans = 51;
+  EXPECT_EQ(result.line(),
+            "odometry not checked: 51 of 100 scans matched no surfaces, the path there is that of odometry");
+  EXPECT_TRUE(result.metrics()["distance_scale"].is_null());
+  result.num_unmatched_scans = 50;
+  EXPECT_EQ(result.block().word, "odometry agrees");
+}
+
 TEST(OdometryReport, WithoutMotionIsNotChecked) {
   EXPECT_EQ(report_of(slam::OdometryHealth{}).line(),
             "odometry not checked: it hardly moves, and neither does the robot in the map");

@@ -59,7 +59,21 @@ TEST(FreeSpace, IsInsideOfWallsWhereTheGroundOutsideIsOnlyTheMarginBehindANarrow
 
 TEST(FreeSpace, APlaceOfLessThan1SquareMeterInsideOfWallsIsNotTaken) {
   EXPECT_FALSE(FreeSpace(room_with_door(), 1.7, std::nullopt, 2.0).is_enclosed());
-  EXPECT_NEAR(area_with_clearance_m2(two_rooms(), 0.5), 3.2 * 3.2 + 2.1 * 3.2, 1e-9);
+  EXPECT_NEAR(area_with_clearance_m2(two_rooms(), 0.5), 3.0 * 3.0 + 1.9 * 3.0, 1e-9);
+}
+
+TEST(FreeSpace, ThroughADoorOfNineCellsARobotOfItsWidthPassesAndAWiderOneDoesNot) {
+  OccupancyGrid plan = room_with_door();
+  plan.at({62, 46}) = 0;
+  const Eigen::Vector2d inside(0.0, 0.0);
+  EXPECT_TRUE(FreeSpace(plan, 0.45, inside).contains({3.2, 0.0}));
+  EXPECT_FALSE(FreeSpace(plan, 0.46, inside).contains({3.2, 0.0}));
+}
+
+TEST(ClearanceProblem, IsADistanceToTheFacesOfWallsBelowTheLimit) {
+  EXPECT_FALSE(clearance_problem(two_rooms(), 0.5, {3.5, 2.0}));  // wall at 4.0 to 4.1 m
+  EXPECT_EQ(clearance_problem(two_rooms(), 0.5, {3.51, 2.0}),
+            "0.49 m from walls or unknown space: the robot needs at least 0.50 m");
 }
 
 TEST(FreeSpace, WithoutRoomForTheClearanceIsRefused) {

@@ -66,6 +66,18 @@ TEST(FuelModels, ModelsAreFoundInTheCacheByVersionAndByOptionWithoutCase) {
   EXPECT_EQ(versioned.read().shapes.front().size_m.x(), 0.9);
 }
 
+TEST(FuelModels, TheGroundPlaneAndTheSunOfGazeboAreKnownAndOthersOfTheNameAreNot) {
+  const std::string fuel = "https://fuel.gazebosim.org/1.0/";
+  SiteFileImport import("a.sdf", world("<include><uri>" + fuel +
+                                       "OpenRobotics/models/Ground Plane</uri></include><include><uri>" + fuel +
+                                       "openrobotics/models/Sun</uri></include>"));
+  const test::Variable home("HOME", (import.folder / "home").string());
+  EXPECT_EQ(import.read().shapes.front().type, SiteShapeType::kPlane);
+  EXPECT_THAT(import.assumption(fuel + "OpenRobotics/models/Ground Plane"), HasSubstr("the plane z = 0"));
+  SiteFileImport other("a.sdf", include(fuel + "somebody/models/Ground Plane"));
+  EXPECT_THAT(other.error(), HasSubstr("model \"Ground Plane\" is not in the cache"));
+}
+
 TEST(FuelModels, AMeshOfANetworkIsFoundInTheFolderOfItsModel) {
   const std::string uri = "https://fuel.gazebosim.org/1.0/o/models/Ball";
   SiteFileImport import("a.sdf", include(uri));

@@ -107,6 +107,14 @@ TEST_F(MapServer, ScaleSpreadsTheValuesBetweenTheThresholdsOver0To100) {
   EXPECT_THAT(load(good_yaml + "mode: scale\n", "P2\n4 1\n255\n0 128 205 254\n").values(), ElementsAre(X, 67, F, F));
 }
 
+TEST_F(MapServer, TheModeInAnyCaseAndAYawOfAFullTurnAreRead) {
+  std::string yaml = good_yaml + "mode: Scale\n";
+  yaml.replace(yaml.find("2.0, 0.0"), 8, "2.0, 6.283185307179586");
+  EXPECT_THAT(load(yaml, "P2\n4 1\n255\n0 128 205 254\n").values(), ElementsAre(X, 67, F, F));
+  EXPECT_EQ(complaint_about(good_yaml + "mode: Trinity\n", "P2\n1 1\n255\n0\n"),
+            "m.yaml:7: mode: trinity is out of range: must be one of trinary, scale, raw");
+}
+
 TEST_F(MapServer, RawTakes0To100AsPercentAndTheRestAsUnknown) {
   EXPECT_THAT(load(good_yaml + "mode: raw\n", "P2\n5 1\n255\n0 42 100 101 255\n").values(),
               ElementsAre(F, 42, X, U, U));

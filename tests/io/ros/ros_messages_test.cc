@@ -112,6 +112,35 @@ TEST(Decode, LaserScanKeepsEveryField) {
   EXPECT_EQ(is.intensities, was.intensities);
 }
 
+/// Bytes of a scan of 5 beams from -1 rad on, 0.5 rad apart, whose angle_max is replaced.
+std::string scan_with_angle_max(float angle_max_rad, double increment_rad = 0.5) {
+  LaserScan scan = test::sample_scan();
+  scan.angle_min_rad = -1.0;
+  scan.angle_increment_rad = increment_rad;
+  scan.ranges_m = {1.0F, 2.0F, 3.0F, 4.0F, 5.0F};
+  std::string bytes = encode(scan);
+  const float first = -1.0F;
+  const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&first), sizeof first)) + sizeof first;
+  bytes.replace(at, sizeof angle_max_rad, reinterpret_cast<const char*>(&angle_max_rad), sizeof angle_max_rad);
+  return bytes;
+}
+
+TEST(Decode, LaserScanWhoseLastAngleIsMoreThanTwoIncrementsOffIsRefused) {
+  for (const float angle_max_rad : {0.1F, 0.5F, 1.0F, 1.5F, 1.9F})
+    EXPECT_EQ(decode<LaserScan>(scan_with_angle_max(angle_max_rad)).ranges_m.size(), 5u) << angle_max_rad;
+  for (const float angle_max_rad : {-1.0F, -0.1F, 2.1F, std::numeric_limits<float>::quiet_NaN()})
+    EXPECT_THROW(decode<LaserScan>(scan_with_angle_max(angle_max_rad)), DecodeError) << angle_max_rad;
+  EXPECT_THROW(decode<LaserScan>(scan_with_angle_max(-1.0F, 0.0)), DecodeError);
+  try {
+    decode<LaserScan>(scan_with_angle_max(3.0F));
+    ADD_FAILURE();
+  } catch (const DecodeError& error) {
+    EXPECT_STREQ(error.what(),
+                 "angle_max 3 rad contradicts the angle of the last of 5 beams, 1 rad by angle_min and "
+                 "angle_increment");
+  }
+}
+
 TEST(Decode, PointCloudKeepsEveryPoint) {
   const PointCloud was = test::sample_cloud(), is = there_and_back(was);
   EXPECT_EQ(is.stamp, was.stamp);
