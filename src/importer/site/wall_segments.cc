@@ -113,84 +113,87 @@ std::vector<WallFitter::Surfel> WallFitter::surfels() const {
   return surfels;
 }
 
+/// Fits a line to surfaces. Its direction is that of `along`, and exactly so for fewer than three surfaces.
+WallFitter::Line WallFitter::fit(const std::vector<std::size_t>& members, const std::vector<Surfel>& surfels,
+                                 const Eigen::Vector2d& along) {
+  Moments m;
+  for (const std::size_t i : members) {
+    const Eigen::Vector2d& p = surfels[i].p_m;
+    m.add(
+        {.weight = surfels[i].weight, .sum = surfels[i].weight * p, .products = surfels[i].weight * p * p.transpose()});
+  }
+  Line line{.center = m.sum / m.weight, .along = along};
+  if (members.size() > 2) {
+    const Eigen::Matrix2d spread = m.products / m.weight - line.center * line.center.transpose();
+    const Eigen::Vector2d axis = PrincipalAxes::along(principal_axes(spread).large_direction_rad);
+    line.along = axis.dot(along) < 0.0 ? Eigen::Vector2d(-axis) : axis;
+  }
+  for (const std::size_t i : members) {
+    const double at = line.along.dot(surfels[i].p_m - line.center);
+    line.begin = std::min(line.begin, at), line.end = std::max(line.end, at);
+  }
+  return line;
+}
+
+bool WallFitter::fits(const Line& line, const Surfel& surfel) const {
+  return std::abs(left_of(line.along).dot(surfel.p_m - line.center)) <= settings_.max_offset_m;
+}
+
+/// Returns the unused surface that continues a line at an end, `tip`, with the smallest gap; none without one.
+std::optional<std::size_t> WallFitter::next_at(double tip, const Line& line, const Eigen::Vector2d& facing,
+                                               const std::vector<Surfel>& surfels, const Grid<int>& first_of,
+                                               const std::vector<char>& is_used) const {
+  const int reach = static_cast<int>(std::ceil(settings_.max_gap_m / grid_.resolution_m)) + 1;
+  const Cell around = grid_.cell_at(grid_.origin_m + line.center + tip * line.along);
+  const auto continues = [&](const Surfel& other) {
+    return other.is_straight && other.normal.dot(facing) >= 0.0 && fits(line, other) &&
+           std::abs(other.along.dot(line.along)) >= std::cos(settings_.max_turn_rad);
+  };
+  std::optional<std::size_t> best;
+  double best_gap = settings_.max_gap_m;
+  for (int row = around.row - reach; row <= around.row + reach; ++row) {
+    for (int col = around.col - reach; col <= around.col + reach; ++col) {
+      const Cell cell{col, row};
+      if (!grid_.contains(cell) || first_of.at(cell) < 0) continue;
+      for (auto i = static_cast<std::size_t>(first_of.at(cell)); i < surfels.size() && surfels[i].cell == cell; ++i) {
+        if (is_used[i] != 0 || !continues(surfels[i])) continue;
+        const double at = line.along.dot(surfels[i].p_m - line.center);
+        const double gap = at < line.begin ? line.begin - at : at > line.end ? at - line.end : 0.0;
+        if (gap < best_gap) best_gap = gap, best = i;
+      }
+    }
+  }
+  return best;
+}
+
 /// Extends a segment from its seed in both directions as long as neighbors fit, and refits the line.
 WallSegment WallFitter::grow(std::size_t seed, const std::vector<Surfel>& surfels, const Grid<int>& first_of,
                              std::vector<char>& is_used) const {
-  const double half_cell_m = 0.5 * grid_.resolution_m;
   std::vector<std::size_t> members = {seed};
   is_used[seed] = 1;
-  Eigen::Vector2d center = surfels[seed].p_m, along = surfels[seed].along;
-  const Eigen::Vector2d normal_of_seed = surfels[seed].normal;
-  double begin = 0.0, end = 0.0;  // along the line, from the center
-  const auto refit = [&] {
-    Moments m;
-    for (const std::size_t i : members) {
-      const Eigen::Vector2d& p = surfels[i].p_m;
-      m.add({.weight = surfels[i].weight,
-             .sum = surfels[i].weight * p,
-             .products = surfels[i].weight * p * p.transpose()});
-    }
-    center = m.sum / m.weight;
-    if (members.size() > 2) {
-      const Eigen::Matrix2d spread = m.products / m.weight - center * center.transpose();
-      const Eigen::Vector2d line = PrincipalAxes::along(principal_axes(spread).large_direction_rad);
-      along = line.dot(along) < 0.0 ? Eigen::Vector2d(-line) : line;
-    }
-    begin = end = 0.0;
-    for (const std::size_t i : members) {
-      const double at = along.dot(surfels[i].p_m - center);
-      begin = std::min(begin, at), end = std::max(end, at);
-    }
-  };
-  const auto fits_all = [&] {
-    const Eigen::Vector2d normal = left_of(along);
-    return std::all_of(members.begin(), members.end(), [&](std::size_t i) {
-      return std::abs(normal.dot(surfels[i].p_m - center)) <= settings_.max_offset_m;
-    });
-  };
-  const int reach = static_cast<int>(std::ceil(settings_.max_gap_m / grid_.resolution_m)) + 1;
+  const Eigen::Vector2d facing = surfels[seed].normal;
+  Line line{.center = surfels[seed].p_m, .along = surfels[seed].along};
   for (bool has_grown = surfels[seed].is_straight; has_grown;) {
     has_grown = false;
-    for (const double tip : {begin, end}) {
-      const Cell around = grid_.cell_at(grid_.origin_m + center + tip * along);
-      std::size_t best = surfels.size();
-      double best_gap = settings_.max_gap_m;
-      for (int row = around.row - reach; row <= around.row + reach; ++row) {
-        for (int col = around.col - reach; col <= around.col + reach; ++col) {
-          if (!grid_.contains({col, row})) continue;
-          const int first = first_of.at({col, row});
-          for (int i = first; i >= 0 && i < static_cast<int>(surfels.size()) &&
-                              surfels[static_cast<std::size_t>(i)].cell == Cell{col, row};
-               ++i) {
-            const Surfel& other = surfels[static_cast<std::size_t>(i)];
-            if (is_used[static_cast<std::size_t>(i)] != 0 || !other.is_straight) continue;
-            if (other.normal.dot(normal_of_seed) < 0.0) continue;
-            if (std::abs(other.along.dot(along)) < std::cos(settings_.max_turn_rad)) continue;
-            const Eigen::Vector2d from_center = other.p_m - center;
-            if (std::abs(left_of(along).dot(from_center)) > settings_.max_offset_m) continue;
-            const double at = along.dot(from_center), gap = at < begin ? begin - at : at > end ? at - end : 0.0;
-            if (gap < best_gap) best_gap = gap, best = static_cast<std::size_t>(i);
-          }
-        }
-      }
-      if (best == surfels.size()) continue;
-      const Eigen::Vector2d center_before = center, along_before = along;
-      members.push_back(best);
-      refit();
-      if (fits_all()) {
-        is_used[best] = 1;
+    for (const double tip : {line.begin, line.end}) {
+      const std::optional<std::size_t> next = next_at(tip, line, facing, surfels, first_of, is_used);
+      if (!next) continue;
+      members.push_back(*next);
+      const Line longer = fit(members, surfels, line.along);
+      if (std::ranges::all_of(members, [&](std::size_t i) { return fits(longer, surfels[i]); })) {
+        line = longer;
+        is_used[*next] = 1;
         has_grown = true;
         break;
       }
       members.pop_back();
-      center = center_before, along = along_before;
-      refit();
     }
   }
-  WallSegment segment{.begin_m = grid_.origin_m + center + (begin - half_cell_m) * along,
-                      .end_m = grid_.origin_m + center + (end + half_cell_m) * along,
-                      .normal = left_of(along)};
-  if (segment.normal.dot(normal_of_seed) < 0.0) segment.normal = -segment.normal;
+  const double half_cell_m = 0.5 * grid_.resolution_m;
+  WallSegment segment{.begin_m = grid_.origin_m + line.center + (line.begin - half_cell_m) * line.along,
+                      .end_m = grid_.origin_m + line.center + (line.end + half_cell_m) * line.along,
+                      .normal = left_of(line.along)};
+  if (segment.normal.dot(facing) < 0.0) segment.normal = -segment.normal;
   segment.thickness_m = thickness_behind(segment);
   return segment;
 }

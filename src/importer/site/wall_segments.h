@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -67,10 +68,23 @@ class WallFitter {
     Cell cell = {};
   };
 
+  /// Line through surfaces.
+  struct Line {
+    Eigen::Vector2d center;
+    Eigen::Vector2d along;          ///< unit vector
+    double begin = 0.0, end = 0.0;  ///< ends along the line, from the center, m
+  };
+
   Moments moments_around(Cell cell, int reach_cells, const Eigen::Vector2d* normal, double min_cosine = 0.0) const;
   std::vector<Surfel> surfels() const;
   double thickness_behind(const WallSegment& segment) const;
-  WallSegment grow(std::size_t seed, const std::vector<Surfel>& surfels, const Grid<int>& index_of,
+  static Line fit(const std::vector<std::size_t>& members, const std::vector<Surfel>& surfels,
+                  const Eigen::Vector2d& along);
+  bool fits(const Line& line, const Surfel& surfel) const;
+  std::optional<std::size_t> next_at(double tip, const Line& line, const Eigen::Vector2d& facing,
+                                     const std::vector<Surfel>& surfels, const Grid<int>& first_of,
+                                     const std::vector<char>& is_used) const;
+  WallSegment grow(std::size_t seed, const std::vector<Surfel>& surfels, const Grid<int>& first_of,
                    std::vector<char>& is_used) const;
 
   GridGeometry grid_;

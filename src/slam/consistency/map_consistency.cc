@@ -40,25 +40,46 @@ struct Segment {
   Eigen::Vector2d center_map;
 };
 
+/// Segments of the paths of all sessions, those of earlier sessions first.
+struct SegmentedPath {
+  std::vector<Segment> segments;
+  std::size_t num_earlier = 0;                                       ///< number of segments of earlier sessions
+  std::vector<std::pair<std::size_t, UnconnectedPart>> interrupted;  ///< first segment of a part, and the part
+
+  /// Returns the connections by the path: of each segment with the one before it in the same part.
+  Connections connections_by_path() const {
+    Connections connections(segments.size());
+    auto next_part = interrupted.begin();
+    for (std::size_t s = 1; s < segments.size(); ++s) {
+      const bool begins_part = next_part != interrupted.end() && next_part->first == s;
+      if (begins_part) ++next_part;
+      else if (s != num_earlier) connections.connect(s - 1, s);
+    }
+    return connections;
+  }
+};
+
 /// Parts of the path after interruptions, by the kept scan that begins each.
 using PartStarts = std::map<std::size_t, UnconnectedPart>;
 
-/// Segments of the path through `T_map_kept`, whose indices in ranges begin at `first_index`. One begins at each start.
-std::vector<Segment> divide(const std::vector<Pose2>& T_map_kept, int first_index, const PartStarts& starts = {}) {
-  std::vector<Segment> segments;
+/// Adds the segments of the path through the poses of keyframes from `begin` to `end`. One begins at each start, which
+/// counts from `begin`.
+void add_segments(const std::vector<Pose2>& T_map_keyframe, std::size_t begin, std::size_t end,
+                  const PartStarts& starts, SegmentedPath& path) {
   double length_m = 0.0;
-  for (std::size_t i = 0; i < T_map_kept.size(); ++i) {
-    const int k = first_index + static_cast<int>(i);
-    if (i > 0) length_m += (T_map_kept[i].position() - T_map_kept[i - 1].position()).norm();
-    if (segments.empty() || length_m > kSegment_m || starts.contains(i)) {
-      segments.push_back({.range = {.first = k, .last = k}, .center_map = T_map_kept[i].position()});
+  for (std::size_t k = begin; k < end; ++k) {
+    const Eigen::Vector2d p_map = T_map_keyframe[k].position();
+    if (k > begin) length_m += (p_map - T_map_keyframe[k - 1].position()).norm();
+    const auto start = starts.find(k - begin);
+    if (k == begin || length_m > kSegment_m || start != starts.end()) {
+      if (k > begin && start != starts.end()) path.interrupted.emplace_back(path.segments.size(), start->second);
+      path.segments.push_back({.range = {.first = static_cast<int>(k)}, .center_map = p_map});
       length_m = 0.0;
     }
-    Segment& newest = segments.back();
-    newest.range.last = k;
-    newest.center_map += (T_map_kept[i].position() - newest.center_map) / (k - newest.range.first + 1);
+    Segment& newest = path.segments.back();
+    newest.range.last = static_cast<int>(k);
+    newest.center_map += (p_map - newest.center_map) / (newest.range.last - newest.range.first + 1);
   }
-  return segments;
 }
 
 /// Returns the mean likelihood of points, as in a search (branch_and_bound.h).
@@ -94,6 +115,42 @@ Comparison compare(const RenderedSubmap& a, const RenderedSubmap& b, const Pose2
   if (std::max(offset_m, kLever_m * offset_rad) < kMinOffset_m) return {.is_overlapping = true};
   return {.is_overlapping = true, .better = here.inverse() * found->T_map_points};
 }
+
+/// Maps of segments, each rendered when it is first compared.
+class SegmentMaps {
+ public:
+  /// `max_beams`: maximum number of beams of a scan. Keeps references to the vectors.
+  SegmentMaps(const std::vector<Segment>& segments, const std::vector<Keyframe>& keyframes,
+              const std::vector<Pose2>& T_map_keyframe, int max_beams)
+      : segments_(segments),
+        keyframes_(keyframes),
+        T_map_keyframe_(T_map_keyframe),
+        rendering_{.resolution_m = kResolution_m,
+                   .max_extent_m = kMaxExtent_m,
+                   .integration = {.free_ray_stride = std::max(1, max_beams / kTracedBeams),
+                                   .max_free_range_m = kMaxFreeRange_m}} {}
+
+  Comparison compare(std::size_t a, std::size_t b) {
+    const Pose2 T_b_map = T_map(b).inverse();
+    return slam::compare(*rendered(a), *rendered(b), T_map(a).inverse() * T_map(b), T_b_map * segments_[b].center_map);
+  }
+
+ private:
+  const Pose2& T_map(std::size_t s) const {
+    return T_map_keyframe_[static_cast<std::size_t>(segments_[s].range.first)];
+  }
+  std::shared_ptr<const RenderedSubmap> rendered(std::size_t s) {
+    return cache_.get(static_cast<int>(s), [&] {
+      return std::make_shared<const RenderedSubmap>(segments_[s].range, keyframes_, T_map_keyframe_, rendering_);
+    });
+  }
+
+  const std::vector<Segment>& segments_;
+  const std::vector<Keyframe>& keyframes_;
+  const std::vector<Pose2>& T_map_keyframe_;
+  MapRenderingSettings rendering_;
+  SubmapCache cache_{kCachedSegments};
+};
 
 }  // namespace
 
@@ -139,8 +196,7 @@ std::vector<UnconnectedPart> ConsistencyCheck::find_interruptions(const std::vec
   return interruptions;
 }
 
-MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
-                                       const std::vector<Keyframe>& earlier) const {
+MapConsistency ConsistencyCheck::count_scans(const std::vector<Pose2>& T_map_body) const {
   MapConsistency result;
   bool continues = false;
   UnmatchedSegment without_returns;
@@ -163,68 +219,53 @@ MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
   }
   std::stable_sort(result.unmatched_segments.begin(), result.unmatched_segments.end(),
                    [](const UnmatchedSegment& a, const UnmatchedSegment& b) { return a.num_scans > b.num_scans; });
+  return result;
+}
 
+MapConsistency ConsistencyCheck::check(const std::vector<Pose2>& T_map_body,
+                                       const std::vector<Keyframe>& earlier) const {
+  MapConsistency result = count_scans(T_map_body);
   std::vector<Keyframe> joined;
   if (!earlier.empty()) {
     joined = earlier;
     joined.insert(joined.end(), kept_.begin(), kept_.end());
   }
   const std::vector<Keyframe>& keyframes = earlier.empty() ? kept_ : joined;
-  std::vector<Pose2> T_map_earlier, T_map_kept;
-  for (const Keyframe& keyframe : earlier) T_map_earlier.push_back(keyframe.T_local_body);
-  for (const std::size_t index : kept_indices_) T_map_kept.push_back(T_map_body[index]);
-  std::vector<Segment> segments = divide(T_map_earlier, 0);
-  const std::size_t num_earlier = segments.size();
+  std::vector<Pose2> T_map_keyframe;
+  for (const Keyframe& keyframe : earlier) T_map_keyframe.push_back(keyframe.T_local_body);
+  for (const std::size_t index : kept_indices_) T_map_keyframe.push_back(T_map_body[index]);
   PartStarts starts;
   for (const UnconnectedPart& part : find_interruptions(T_map_body)) {
     const auto first_kept = std::ranges::lower_bound(kept_indices_, part.first_scan);
     starts.emplace(static_cast<std::size_t>(first_kept - kept_indices_.begin()), part);
   }
-  const std::vector<Segment> own = divide(T_map_kept, static_cast<int>(earlier.size()), starts);
-  segments.insert(segments.end(), own.begin(), own.end());
-  Connections connections(segments.size());
-  std::vector<std::pair<std::size_t, UnconnectedPart>> interrupted;  // first segment of a part, and the part
-  for (std::size_t s = 1; s < segments.size(); ++s) {
-    if (s == num_earlier) continue;
-    const std::size_t first = static_cast<std::size_t>(segments[s].range.first);
-    const auto start = s > num_earlier ? starts.find(first - earlier.size()) : starts.end();
-    if (start != starts.end()) interrupted.emplace_back(s, start->second);
-    else connections.connect(s - 1, s);
-  }
-  result.num_segments = static_cast<int>(own.size());
-  std::vector<Pose2> T_map_keyframe = std::move(T_map_earlier);
-  T_map_keyframe.insert(T_map_keyframe.end(), T_map_kept.begin(), T_map_kept.end());
+  SegmentedPath path;
+  add_segments(T_map_keyframe, 0, earlier.size(), {}, path);
+  path.num_earlier = path.segments.size();
+  add_segments(T_map_keyframe, earlier.size(), T_map_keyframe.size(), starts, path);
+  result.num_segments = static_cast<int>(path.segments.size() - path.num_earlier);
+
+  const std::vector<Segment>& segments = path.segments;
   const auto first_scan = [&](std::size_t s) {
     return kept_indices_[static_cast<std::size_t>(segments[s].range.first) - earlier.size()];
   };
-  const MapRenderingSettings rendering{
-      .resolution_m = kResolution_m,
-      .max_extent_m = kMaxExtent_m,
-      .integration = {.free_ray_stride = std::max(1, static_cast<int>(max_beams_) / kTracedBeams),
-                      .max_free_range_m = kMaxFreeRange_m}};
-  SubmapCache cache(kCachedSegments);
-  const auto rendered = [&](std::size_t s) {
-    return cache.get(static_cast<int>(s), [&] {
-      return std::make_shared<const RenderedSubmap>(segments[s].range, keyframes, T_map_keyframe, rendering);
-    });
-  };
-  const auto T_map = [&](std::size_t s) { return T_map_keyframe[static_cast<std::size_t>(segments[s].range.first)]; };
-  for (std::size_t b = num_earlier; b < segments.size(); ++b) {
+  Connections connections = path.connections_by_path();
+  SegmentMaps maps(segments, keyframes, T_map_keyframe, static_cast<int>(max_beams_));
+  for (std::size_t b = path.num_earlier; b < segments.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
       if ((segments[a].center_map - segments[b].center_map).norm() > kMaxDistance_m) continue;
-      const Comparison comparison = compare(*rendered(a), *rendered(b), T_map(a).inverse() * T_map(b),
-                                            T_map(b).inverse() * segments[b].center_map);
+      const Comparison comparison = maps.compare(a, b);
       result.num_compared += comparison.is_overlapping ? 1 : 0;
       if (comparison.is_overlapping && !comparison.better) connections.connect(a, b);
       if (!comparison.better) continue;
       result.disagreements.push_back({.p_map = 0.5 * (segments[a].center_map + segments[b].center_map),
-                                      .first_scan = a < num_earlier ? std::nullopt : std::optional(first_scan(a)),
+                                      .first_scan = a < path.num_earlier ? std::nullopt : std::optional(first_scan(a)),
                                       .second_scan = first_scan(b),
                                       .offset_m = comparison.better->position().norm(),
                                       .offset_rad = comparison.better->yaw});
     }
   }
-  for (const auto& [first, part] : interrupted) {
+  for (const auto& [first, part] : path.interrupted) {
     if (!connections.are_connected(first - 1, first)) result.unconnected.push_back(part);
   }
   std::stable_sort(result.disagreements.begin(), result.disagreements.end(),

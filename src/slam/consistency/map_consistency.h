@@ -78,8 +78,7 @@ struct MapConsistency {
 /// of them do. Both are necessary: people and furniture move, and smooth corridors match anywhere along them.
 ///
 /// The path is interrupted where it has no matched scan for more than 2 m, or consecutive scans are further apart. A
-/// scan without returns is not matched. Its
-/// parts are connected if a segment of each agrees with one of the other.
+/// scan without returns is not matched. Its parts are connected if a segment of each agrees with one of the other.
 class ConsistencyCheck {
  public:
   /// Adds the next scan with the result of mapping it.
@@ -92,6 +91,8 @@ class ConsistencyCheck {
   struct MatchedScan {
     bool has_returns, is_matched;
   };
+  /// Returns the numbers of scans with and without returns and matches.
+  MapConsistency count_scans(const std::vector<Pose2>& T_map_body) const;
   /// Parts after interruptions of the path, whether they are connected or not.
   std::vector<UnconnectedPart> find_interruptions(const std::vector<Pose2>& T_map_body) const;
 
