@@ -133,80 +133,113 @@ std::optional<double> lidar_yaw_rad(const AsBuiltTruth& as_built, const Eigen::Q
   return (R_body_lidar * angles_rad).z();
 }
 
+/// True values of a record, without those that it does not determine.
+class TrueValues {
+ public:
+  explicit TrueValues(const CalibrationRecord& record) : record_(record) {}
+
+  const std::vector<TrueParameter>& values() const { return values_; }
+
+  void add_lidar(const CalibrationReferences& references, Time stamp) {
+    const std::optional<double> offset_s = drawn(name_of(kLidarTimeOffset)), drift = drawn(name_of(kLidarClockDrift));
+    if (offset_s && drift) {
+      const double fault_s = references.lidar_clock_fault_s ? references.lidar_clock_fault_s(stamp) : 0.0;
+      add(kLidarTimeOffset, *offset_s + *drift * to_seconds(stamp) + fault_s);
+    }
+    add(kLidarClockDrift, drift);
+    add(kLidarYaw, lidar_yaw_rad(record_.as_built, references.R_body_lidar));
+  }
+
+  void add_uwb() {
+    for (const auto& [name, value] : record_.as_built.values)
+      if (name.starts_with("uwb.")) values_.push_back({.name = name, .value = value, .drawn = std::nullopt});
+  }
+
+  /// Adds the scales of odometry, and bias and scale of the gyro about z, fitted to the true motion.
+  void add_fits(const Eigen::Quaterniond& R_body_imu) {
+    const GyroYaw gyro(record_, R_body_imu);
+    double odom_m2 = 0.0, along_m2 = 0.0, odom_rad2 = 0.0, along_rad2 = 0.0;
+    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
+    for (const Segment& segment : segments_of(record_)) {
+      odom_m2 += segment.T_from_to_odom.position().squaredNorm();
+      along_m2 += segment.T_from_to_odom.position().dot(segment.T_from_to_true.position());
+      odom_rad2 += segment.T_from_to_odom.yaw * segment.T_from_to_odom.yaw;
+      along_rad2 += segment.T_from_to_odom.yaw * segment.T_from_to_true.yaw;
+      const Time from = record_.T_odom_body[segment.from].stamp, to = record_.T_odom_body[segment.to].stamp;
+      const std::optional<double> from_rad = gyro.at(from), to_rad = gyro.at(to);
+      if (!from_rad || !to_rad) continue;
+      const Eigen::Vector2d row(-to_seconds(to - from), *to_rad - *from_rad);
+      A += row * row.transpose();
+      b += row * wrap_angle(segment.T_from_to_true.yaw - row[1]);
+    }
+    const std::optional<double> left = drawn("tracks.left_sprocket_scale"),
+                                right = drawn("tracks.right_sprocket_scale");
+    add(kOdometryDistanceScale, along_m2 / odom_m2, 0.0,
+        left && right ? std::optional(0.5 * (*left + *right)) : std::nullopt);
+    add(kOdometryRotationScale, along_rad2 / odom_rad2);
+    if (!(A.determinant() > kMinDeterminant * A(0, 0) * A(1, 1))) return;
+    const Eigen::Vector2d fit = solve_symmetric(A, b);
+    add(kGyroZBias, fit[0]);
+    add(kGyroZScale, 1.0 + fit[1]);
+  }
+
+  /// Adds the biases of the other axes: at power-on, by warming, by gravity on level ground.
+  void add_biases(Time stamp) {
+    const double gyro_walk = drawn("imu.gyro_bias_walk_radps_per_sqrt_s").value_or(0.0);
+    const double accel_walk = drawn("imu.accel_bias_walk_mps2_per_sqrt_s").value_or(0.0);
+    add_bias(kGyroXBias, "imu.gyro_x", "radps", gyro_walk, stamp);
+    add_bias(kGyroYBias, "imu.gyro_y", "radps", gyro_walk, stamp);
+    add_bias(kAccelXBias, "imu.accel_x", "mps2", accel_walk, stamp);
+    add_bias(kAccelYBias, "imu.accel_y", "mps2", accel_walk, stamp);
+    add_bias(kAccelZBias, "imu.accel_z", "mps2", accel_walk, stamp);
+  }
+
+  void add_turn_center(Time stamp) {
+    const std::optional<Eigen::Vector2d> center = turn_center(record_, stamp);
+    if (!center) return;
+    add(kTurnCenterX, center->x());
+    add(kTurnCenterY, center->y());
+  }
+
+ private:
+  using enum CalibrationParameter;
+
+  std::optional<double> drawn(std::string_view name) const { return value_of(record_.as_built.values, name); }
+
+  void add(CalibrationParameter parameter, std::optional<double> value, double std = 0.0,
+           std::optional<double> related = std::nullopt) {
+    if (value && std::isfinite(*value))
+      values_.push_back({.name = std::string(name_of(parameter)), .value = *value, .std = std, .drawn = related});
+  }
+
+  void add_bias(CalibrationParameter parameter, const std::string& axis, const char* unit, double walk, Time stamp) {
+    const std::optional<double> turn_on = drawn(name_of(parameter));
+    const std::optional<double> warm = drawn(axis + "_warming_" + unit);
+    if (!turn_on || !warm) return;
+    const double elapsed_s = std::max(0.0, to_seconds(stamp));
+    const double warming = 1.0 - std::exp(-elapsed_s / drawn("imu.warming_time_s").value_or(1.0));
+    const double by_gravity = drawn(axis + "_by_gravity_" + unit).value_or(0.0);
+    add(parameter, *turn_on + warming * *warm + by_gravity, walk * std::sqrt(elapsed_s));
+  }
+
+  const CalibrationRecord& record_;
+  std::vector<TrueParameter> values_;
+};
+
 }  // namespace
 
 bool ScoredParameter::holds() const { return std::abs(error()) <= kQuantile95 * std::hypot(std, truth_std); }
 
 std::vector<TrueParameter> calibration_truth(const CalibrationRecord& record, const CalibrationReferences& references,
                                              Time stamp) {
-  using enum CalibrationParameter;
-  std::vector<TrueParameter> truth;
-  const auto drawn = [&](std::string_view name) { return value_of(record.as_built.values, name); };
-  const auto add = [&](CalibrationParameter parameter, std::optional<double> value, double std = 0.0,
-                       std::optional<double> related = std::nullopt) {
-    if (value && std::isfinite(*value))
-      truth.push_back({.name = std::string(name_of(parameter)), .value = *value, .std = std, .drawn = related});
-  };
-  const std::optional<double> offset_s = drawn(name_of(kLidarTimeOffset));
-  const std::optional<double> drift = drawn(name_of(kLidarClockDrift));
-  if (offset_s && drift) {
-    const double fault_s = references.lidar_clock_fault_s ? references.lidar_clock_fault_s(stamp) : 0.0;
-    add(kLidarTimeOffset, *offset_s + *drift * to_seconds(stamp) + fault_s);
-  }
-  add(kLidarClockDrift, drift);
-  add(kLidarYaw, lidar_yaw_rad(record.as_built, references.R_body_lidar));
-  for (const auto& [name, value] : record.as_built.values)
-    if (name.starts_with("uwb.")) truth.push_back({.name = name, .value = value, .drawn = std::nullopt});
-
-  const GyroYaw gyro(record, references.R_body_imu);
-  double odom_m2 = 0.0, along_m2 = 0.0, odom_rad2 = 0.0, along_rad2 = 0.0;
-  Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d b = Eigen::Vector2d::Zero();
-  for (const Segment& segment : segments_of(record)) {
-    odom_m2 += segment.T_from_to_odom.position().squaredNorm();
-    along_m2 += segment.T_from_to_odom.position().dot(segment.T_from_to_true.position());
-    odom_rad2 += segment.T_from_to_odom.yaw * segment.T_from_to_odom.yaw;
-    along_rad2 += segment.T_from_to_odom.yaw * segment.T_from_to_true.yaw;
-    const Time from = record.T_odom_body[segment.from].stamp, to = record.T_odom_body[segment.to].stamp;
-    const std::optional<double> from_rad = gyro.at(from), to_rad = gyro.at(to);
-    if (!from_rad || !to_rad) continue;
-    const Eigen::Vector2d row(-to_seconds(to - from), *to_rad - *from_rad);
-    A += row * row.transpose();
-    b += row * wrap_angle(segment.T_from_to_true.yaw - row[1]);
-  }
-  const std::optional<double> left = drawn("tracks.left_sprocket_scale"), right = drawn("tracks.right_sprocket_scale");
-  add(kOdometryDistanceScale, along_m2 / odom_m2, 0.0,
-      left && right ? std::optional(0.5 * (*left + *right)) : std::nullopt);
-  add(kOdometryRotationScale, along_rad2 / odom_rad2);
-  if (A.determinant() > kMinDeterminant * A(0, 0) * A(1, 1)) {
-    const Eigen::Vector2d fit = solve_symmetric(A, b);
-    add(kGyroZBias, fit[0]);
-    add(kGyroZScale, 1.0 + fit[1]);
-  }
-
-  // Biases of the other axes: at power-on, by warming, by gravity on level ground.
-  const double elapsed_s = std::max(0.0, to_seconds(stamp));
-  const double warming = 1.0 - std::exp(-elapsed_s / drawn("imu.warming_time_s").value_or(1.0));
-  const auto add_bias = [&](CalibrationParameter parameter, const std::string& axis, const char* unit, double walk) {
-    const std::optional<double> turn_on = drawn(name_of(parameter));
-    const std::optional<double> warm = drawn(axis + "_warming_" + unit);
-    if (!turn_on || !warm) return;
-    const double by_gravity = drawn(axis + "_by_gravity_" + unit).value_or(0.0);
-    add(parameter, *turn_on + warming * *warm + by_gravity, walk * std::sqrt(elapsed_s));
-  };
-  const double gyro_walk = drawn("imu.gyro_bias_walk_radps_per_sqrt_s").value_or(0.0);
-  const double accel_walk = drawn("imu.accel_bias_walk_mps2_per_sqrt_s").value_or(0.0);
-  add_bias(kGyroXBias, "imu.gyro_x", "radps", gyro_walk);
-  add_bias(kGyroYBias, "imu.gyro_y", "radps", gyro_walk);
-  add_bias(kAccelXBias, "imu.accel_x", "mps2", accel_walk);
-  add_bias(kAccelYBias, "imu.accel_y", "mps2", accel_walk);
-  add_bias(kAccelZBias, "imu.accel_z", "mps2", accel_walk);
-
-  if (const std::optional<Eigen::Vector2d> center = turn_center(record, stamp)) {
-    add(kTurnCenterX, center->x());
-    add(kTurnCenterY, center->y());
-  }
-  return truth;
+  TrueValues truth(record);
+  truth.add_lidar(references, stamp);
+  truth.add_uwb();
+  truth.add_fits(references.R_body_imu);
+  truth.add_biases(stamp);
+  truth.add_turn_center(stamp);
+  return truth.values();
 }
 
 std::vector<ScoredParameter> calibration_score(const CalibrationEstimate& estimate,

@@ -79,9 +79,7 @@ std::string earlier_map_line(const SlamOptions& options, bool is_located, std::s
                      num_nodes - num_earlier_nodes);
 }
 
-}  // namespace
-
-ExitCode slam_command(const SlamOptions& options) {
+LogMappingSettings settings_of(const SlamOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   if (options.method) overrides.push_back("slam.method=" + *options.method);
   if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
@@ -89,19 +87,34 @@ ExitCode slam_command(const SlamOptions& options) {
   LogMappingSettings settings;
   if (options.calibration) settings.calibration = io::load_settings<slam::Calibration>(*options.calibration, {});
   io::SettingsReader::read_section({"--set", overrides}, io::parse_overrides(overrides), "", settings);
+  return settings;
+}
+
+/// Extends a mapper with the map of an earlier session. Returns the number of its keyframes; 0 without an earlier map.
+std::size_t extend_earlier_map(const SlamOptions& options, const std::string& method, slam::Mapper& mapper) {
+  if (!options.earlier_map) return 0;
+  if (std::filesystem::weakly_canonical(*options.earlier_map) == std::filesystem::weakly_canonical(options.out))
+    throw InputError("--out: must not be the directory of --map");
+  const slam::SubmapGraph earlier = load_submap_graph(*options.earlier_map);
+  if (!mapper.extend(earlier)) throw InputError(fmt::format("--map: method {} cannot extend a map", method));
+  return earlier.keyframes.size();
+}
+
+/// Returns the first keyframes of a map, those of earlier sessions.
+std::vector<slam::Keyframe> earlier_keyframes(const std::optional<slam::SubmapGraph>& submaps, std::size_t count) {
+  if (!submaps) return {};
+  return {submaps->keyframes.begin(), submaps->keyframes.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
+}  // namespace
+
+ExitCode slam_command(const SlamOptions& options) {
+  LogMappingSettings settings = settings_of(options);
   const std::filesystem::path file = log_of(options.log);
   const std::unique_ptr<io::ScanLog> log = io::open_scan_log(file, settings.log);
   const std::string adaptation = adapt_to_log(file, settings);
   const std::unique_ptr<slam::Mapper> mapper = make_log_mapper(settings);
-  std::size_t num_earlier_nodes = 0;
-  if (options.earlier_map) {
-    if (std::filesystem::weakly_canonical(*options.earlier_map) == std::filesystem::weakly_canonical(options.out))
-      throw InputError("--out: must not be the directory of --map");
-    const slam::SubmapGraph earlier = load_submap_graph(*options.earlier_map);
-    num_earlier_nodes = earlier.keyframes.size();
-    if (!mapper->extend(earlier))
-      throw InputError(fmt::format("--map: method {} cannot extend a map", settings.slam.method));
-  }
+  std::size_t num_earlier_nodes = extend_earlier_map(options, settings.slam.method, *mapper);
 
   const double wall_s = wall_seconds(), thread_s = thread_cpu_time_s();
   MappedLog mapped;
@@ -111,31 +124,28 @@ ExitCode slam_command(const SlamOptions& options) {
     fmt::print(stderr, "patrol: interrupted; {} is incomplete\n", options.out.string());
     return ExitCode::kProgramFailed;
   }
+  if (!mapper->is_located()) num_earlier_nodes = 0;
   const std::vector<Pose2> path = mapper->path();
   const Trajectory estimate = trajectory_of(mapped.stamps, path);
   const std::optional<slam::SubmapGraph> submaps = mapper->submap_graph();
   const PoseGraph graph = submaps ? submaps->graph : mapper->graph();
-  if (!mapper->is_located()) num_earlier_nodes = 0;
+  const OccupancyGrid map = mapper->map();
   io::save_tum(options.out / "estimate.tum", estimate, "T_map_body by " + settings.slam.method);
   io::save_tum(options.out / "odometry.tum", trajectory_of(mapped.stamps, mapped.T_odom_body),
                "T_odom_body, from the first scan");
-  const OccupancyGrid map = mapper->map();
   io::save_map(options.out / "map.yaml", map);
   if (submaps) save_submap_graph(options.out, *submaps);
   else io::save_g2o(options.out / "pose_graph.g2o", graph);
   io::save_settings(options.out / "settings.yaml", settings);
   io::save_csv(options.out / "performance.csv", mapped.cost.table());
+
+  const MappingChecks checks = check_mapping(mapped, path, earlier_keyframes(submaps, num_earlier_nodes));
+  const double took_s = wall_seconds() - wall_s, real_time_factor = mapped.duration_s() / std::max(1e-9, took_s);
   io::Metrics metrics = metrics_of(log->summary(), mapped, estimate, graph);
   metrics["log"]["range_std_m"] = settings.range_std_m;
-  std::vector<slam::Keyframe> earlier;
-  if (submaps)
-    earlier.assign(submaps->keyframes.begin(),
-                   submaps->keyframes.begin() + static_cast<std::ptrdiff_t>(num_earlier_nodes));
-  const MappingChecks checks = check_mapping(mapped, path, earlier);
-  const double took_s = wall_seconds() - wall_s;
   metrics["performance"] = {{"wall_s", took_s},
                             {"processor_s", thread_cpu_time_s() - thread_s},
-                            {"real_time_factor", mapped.duration_s() / std::max(1e-9, took_s)},
+                            {"real_time_factor", real_time_factor},
                             {"peak_memory_mb", peak_memory_mb()}};
   metrics["loop_closures"] = to_metrics(mapper->loop_closure_statistics());
   metrics["earlier_map"] =
@@ -158,7 +168,7 @@ ExitCode slam_command(const SlamOptions& options) {
       "{}{}{} scans, {:.0f} m by odometry, mapped by {} in {:.1f} s ({:.0f} times real time), {:.0f} MB\n{} keyframes, "
       "{} edges, {} of them to other submaps\n{}{}\n{}\n{}\n",
       io::to_text(log->summary()), adaptation, mapped.stamps.size(), mapped.distance_m, settings.slam.method, took_s,
-      mapped.duration_s() / std::max(1e-9, took_s), peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
+      real_time_factor, peak_memory_mb(), graph.T_map_node.size(), graph.edges.size(),
       metrics["graph"]["cross_submap_edges"].get<std::size_t>(),
       earlier_map_line(options, mapper->is_located(), num_earlier_nodes, graph.T_map_node.size()),
       checks.consistency.line(), checks.odometry.line(), (options.out / "map.yaml").string());

@@ -93,6 +93,57 @@ std::vector<std::string> frames_of_types() {
   (std::make_index_sequence<std::variant_size_v<stack::StackMessage>>{});
 }
 
+/// Throws InputError if a stack must not publish a topic.
+void check_topic(const std::string& topic) {
+  if (!topic.starts_with('/') || topic.size() > kMaxNameBytes || !io::is_utf8(topic) ||
+      io::has_control_characters(topic)) {
+    throw InputError("name of a topic must begin with / and have at most 200 printable characters in UTF-8");
+  }
+  if (topic == link::kControlTopic<link::HelloReply>)
+    throw InputError("only the first message of a stack answers the hello");
+  if (topic.starts_with("/link/") || topic.starts_with("/recorded/") || !io::is_stack_output(topic))
+    throw InputError("only the simulator writes this topic");
+}
+
+/// Checks a message of a topic that Patrol does not define. Throws InputError if it is not of its type.
+PublishedMessage foreign_message(link::PublishedMessage message) {
+  for (const std::string* text : {&message.type, &message.definition}) {
+    if (!io::is_utf8(*text)) throw InputError("type and definition must be UTF-8");
+  }
+  io::check_ros_message(message.type, message.definition, message.cdr);
+  return {.content = {},
+          .topic = std::move(message.topic),
+          .type = std::move(message.type),
+          .definition = std::move(message.definition),
+          .cdr = std::move(message.cdr)};
+}
+
+/// Throws InputError if stamps, texts or numbers of a message are invalid.
+void check_content(const stack::StackMessage& content, const std::string& cdr, const StampRange& stamps) {
+  const io::MessageHeader header = io::header_of(cdr);
+  if (header.nanoseconds >= 1'000'000'000U)
+    throw InputError(fmt::format("nanosec of the stamp is {}: must be below 1000000000", header.nanoseconds));
+  for (const Time stamp : stamps_of(header, content)) {
+    if (stamp >= stamps.from && stamp <= stamps.to) continue;
+    throw InputError(fmt::format("stamp is {:.3f} s: must be in simulated time, from {:.3f} to {:.3f} s",
+                                 to_seconds(stamp), to_seconds(stamps.from), to_seconds(stamps.to)));
+  }
+  for (const auto& [name, text] : texts_of(content)) {
+    if (!io::is_utf8(text)) throw InputError(fmt::format("{} is not UTF-8", name));
+  }
+  if (!has_finite_numbers(content)) throw InputError("contains a number that is not finite");
+  if (const double coordinate_m = max_coordinate_m(content); coordinate_m > io::kMaxCoordinate_m) {
+    throw InputError(
+        fmt::format("contains a position with a coordinate of {:g} m: must be within {:.0f} m of the origin of its "
+                    "frame",
+                    coordinate_m, io::kMaxCoordinate_m));
+  }
+  if (!has_resolution(content)) throw InputError("resolution must be at least 0.0001 m");
+  if (const std::optional<int> cell = invalid_cell(content))
+    throw InputError(fmt::format("a cell of the map is {}: must be in [-1, 100]", *cell));
+  if (!has_unit_quaternions(content, cdr)) throw InputError("contains a quaternion whose norm is not 1");
+}
+
 }  // namespace
 
 std::string quoted_name(const std::string& name) { return io::on_one_line(io::first_bytes(name, kMaxNameBytes)); }
@@ -120,65 +171,19 @@ std::optional<std::string> unexpected_frame(const PublishedMessage& message) {
 
 PublishedMessage checked_message(link::PublishedMessage message, const StampRange& stamps) {
   const std::string where = message.topic.empty() ? "a topic without a name" : quoted_name(message.topic);
-  const auto refuse = [&where](const std::string& reason) {
-    throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", where, reason));
-  };
-  if (!message.topic.starts_with('/') || message.topic.size() > kMaxNameBytes || !io::is_utf8(message.topic) ||
-      io::has_control_characters(message.topic)) {
-    refuse("name of a topic must begin with / and have at most 200 printable characters in UTF-8");
-  }
-  if (message.topic == link::kControlTopic<link::HelloReply>)
-    refuse("only the first message of a stack answers the hello");
-  if (message.topic.starts_with("/link/") || message.topic.starts_with("/recorded/") ||
-      !io::is_stack_output(message.topic))
-    refuse("only the simulator writes this topic");
-  const std::optional<io::TopicInfo> info = io::find_topic(message.topic);
-  if (!info) {
-    for (const std::string* text : {&message.type, &message.definition}) {
-      if (!io::is_utf8(*text)) refuse("type and definition must be UTF-8");
-    }
-    try {
-      io::check_ros_message(message.type, message.definition, message.cdr);
-    } catch (const InputError& error) {
-      refuse(error.what());
-    }
-    return {.content = {},
-            .topic = std::move(message.topic),
-            .type = std::move(message.type),
-            .definition = std::move(message.definition),
-            .cdr = std::move(message.cdr)};
-  }
-  if (message.type != info->type) refuse(fmt::format("type is {}: must be {}", quoted_name(message.type), info->type));
-  PublishedMessage checked{.content = {}, .topic = std::move(message.topic), .cdr = std::move(message.cdr)};
   try {
+    check_topic(message.topic);
+    const std::optional<io::TopicInfo> info = io::find_topic(message.topic);
+    if (!info) return foreign_message(std::move(message));
+    if (message.type != info->type)
+      throw InputError(fmt::format("type is {}: must be {}", quoted_name(message.type), info->type));
+    PublishedMessage checked{.content = {}, .topic = std::move(message.topic), .cdr = std::move(message.cdr)};
     checked.content = io::decode_as<stack::StackMessage>(checked.topic, checked.cdr);
+    if (checked.content) check_content(*checked.content, checked.cdr, stamps);
+    return checked;
   } catch (const InputError& error) {
-    refuse(error.what());
+    throw LinkError(LinkFault::kInvalid, fmt::format("message on {}: {}", where, error.what()));
   }
-  if (!checked.content) return checked;
-  const io::MessageHeader header = io::header_of(checked.cdr);
-  if (header.nanoseconds >= 1'000'000'000U)
-    refuse(fmt::format("nanosec of the stamp is {}: must be below 1000000000", header.nanoseconds));
-  for (const Time stamp : stamps_of(header, *checked.content)) {
-    if (stamp >= stamps.from && stamp <= stamps.to) continue;
-    refuse(fmt::format("stamp is {:.3f} s: must be in simulated time, from {:.3f} to {:.3f} s", to_seconds(stamp),
-                       to_seconds(stamps.from), to_seconds(stamps.to)));
-  }
-  for (const auto& [name, text] : texts_of(*checked.content)) {
-    if (!io::is_utf8(text)) refuse(fmt::format("{} is not UTF-8", name));
-  }
-  if (!has_finite_numbers(*checked.content)) refuse("contains a number that is not finite");
-  if (const double coordinate_m = max_coordinate_m(*checked.content); coordinate_m > io::kMaxCoordinate_m) {
-    refuse(
-        fmt::format("contains a position with a coordinate of {:g} m: must be within {:.0f} m of the origin of its "
-                    "frame",
-                    coordinate_m, io::kMaxCoordinate_m));
-  }
-  if (!has_resolution(*checked.content)) refuse("resolution must be at least 0.0001 m");
-  if (const std::optional<int> cell = invalid_cell(*checked.content))
-    refuse(fmt::format("a cell of the map is {}: must be in [-1, 100]", *cell));
-  if (!has_unit_quaternions(*checked.content, checked.cdr)) refuse("contains a quaternion whose norm is not 1");
-  return checked;
 }
 
 }  // namespace patrol::app

@@ -264,14 +264,7 @@ void SourceReader::read_joint(const XMLElement& element) {
   SourceJoint joint{.name = required_name(element), .line = element.GetLineNum()};
   const auto [other, is_new] = joint_lines_.emplace(joint.name, joint.line);
   if (!is_new) fail(element, joint.name, "duplicate joint: also in " + robot_.short_location(other->second));
-  const std::string type = attribute_text(element, "type");
-  const auto found = kJointTypes.find(type);
-  if (found == kJointTypes.end()) {
-    fail(element, joint.name,
-         fmt::format("unknown joint type \"{}\": must be fixed, continuous, revolute, prismatic, floating or planar",
-                     io::on_one_line(type)));
-  }
-  joint.type = found->second;
+  joint.type = joint_type(element, joint.name);
   for (const auto& [tag, link] : {std::pair{"parent", &joint.parent}, std::pair{"child", &joint.child}}) {
     const XMLElement* end = element.FirstChildElement(tag);
     if (end == nullptr || end->Attribute("link") == nullptr)
@@ -281,44 +274,58 @@ void SourceReader::read_joint(const XMLElement& element) {
       fail(*end, joint.name, fmt::format("unknown {} link: {}", tag, io::on_one_line(*link)));
   }
   joint.T_parent_child = origin(element, joint.name);
-  if (const XMLElement* axis = element.FirstChildElement("axis")) {
-    joint.axis = vector(*axis, "xyz", joint.name);
-    const bool has_axis = joint.type != JointType::kFixed && joint.type != JointType::kFloating;
-    if (joint.axis.norm() < 1e-9) {
-      if (has_axis) fail(*axis, joint.name, "axis: must not be zero");
-      joint.axis = Eigen::Vector3d::UnitX();
-    }
-    joint.axis.normalize();
-  }
-  const XMLElement* limit = element.FirstChildElement("limit");
+  if (const XMLElement* axis = element.FirstChildElement("axis")) read_axis(*axis, joint);
   const bool needs_limit = joint.type == JointType::kRevolute || joint.type == JointType::kPrismatic;
-  if (limit != nullptr) {
-    joint.lower = optional_number(*limit, "lower", joint.name).value_or(0.0);
-    joint.upper = optional_number(*limit, "upper", joint.name).value_or(0.0);
-    joint.effort = optional_number(*limit, "effort", joint.name);
-    joint.velocity = optional_number(*limit, "velocity", joint.name);
-    for (const auto& [attribute, value] : {std::pair{"effort", joint.effort}, std::pair{"velocity", joint.velocity}}) {
-      if (value && *value < 0.0)
-        fail(*limit, joint.name, fmt::format("limit {} = {}: must not be negative", attribute, *value));
-    }
-    const bool is_given = limit->Attribute("lower") != nullptr || limit->Attribute("upper") != nullptr;
-    if (needs_limit && is_given && joint.lower == 0.0 && joint.upper == 0.0) {
-      joint.type = JointType::kFixed;
-      robot_.assumptions.push_back({.subject = joint.name,
-                                    .text = "fixed at zero: its limits lower and upper are both 0",
-                                    .override_with = "<limit lower upper> of the joint"});
-    } else if (needs_limit && is_given && joint.lower >= joint.upper) {
-      fail(*limit, joint.name, fmt::format("limit lower = {}: must be below upper = {}", joint.lower, joint.upper));
-    }
-  } else if (needs_limit) {
-    fail(element, joint.name, fmt::format("<limit> is missing: required for a {} joint", type));
-  }
+  if (const XMLElement* limit = element.FirstChildElement("limit")) read_limit(*limit, needs_limit, joint);
+  else if (needs_limit)
+    fail(element, joint.name,
+         fmt::format("<limit> is missing: required for a {} joint", attribute_text(element, "type")));
   if (const XMLElement* dynamics = element.FirstChildElement("dynamics")) {
     joint.damping = std::max(0.0, optional_number(*dynamics, "damping", joint.name).value_or(0.0));
     joint.friction = std::max(0.0, optional_number(*dynamics, "friction", joint.name).value_or(0.0));
   }
   if (const XMLElement* mimic = element.FirstChildElement("mimic")) read_mimic(*mimic, joint);
   robot_.joints.push_back(std::move(joint));
+}
+
+JointType SourceReader::joint_type(const XMLElement& element, const std::string& joint) const {
+  const std::string type = attribute_text(element, "type");
+  const auto found = kJointTypes.find(type);
+  if (found != kJointTypes.end()) return found->second;
+  fail(element, joint,
+       fmt::format("unknown joint type \"{}\": must be fixed, continuous, revolute, prismatic, floating or planar",
+                   io::on_one_line(type)));
+}
+
+void SourceReader::read_axis(const XMLElement& axis, SourceJoint& joint) const {
+  joint.axis = vector(axis, "xyz", joint.name);
+  const bool has_axis = joint.type != JointType::kFixed && joint.type != JointType::kFloating;
+  if (joint.axis.norm() < 1e-9) {
+    if (has_axis) fail(axis, joint.name, "axis: must not be zero");
+    joint.axis = Eigen::Vector3d::UnitX();
+  }
+  joint.axis.normalize();
+}
+
+void SourceReader::read_limit(const XMLElement& limit, bool needs_limit, SourceJoint& joint) {
+  joint.lower = optional_number(limit, "lower", joint.name).value_or(0.0);
+  joint.upper = optional_number(limit, "upper", joint.name).value_or(0.0);
+  joint.effort = optional_number(limit, "effort", joint.name);
+  joint.velocity = optional_number(limit, "velocity", joint.name);
+  for (const auto& [attribute, value] : {std::pair{"effort", joint.effort}, std::pair{"velocity", joint.velocity}}) {
+    if (value && *value < 0.0)
+      fail(limit, joint.name, fmt::format("limit {} = {}: must not be negative", attribute, *value));
+  }
+  const bool is_given = limit.Attribute("lower") != nullptr || limit.Attribute("upper") != nullptr;
+  if (!needs_limit || !is_given) return;
+  if (joint.lower == 0.0 && joint.upper == 0.0) {
+    joint.type = JointType::kFixed;
+    robot_.assumptions.push_back({.subject = joint.name,
+                                  .text = "fixed at zero: its limits lower and upper are both 0",
+                                  .override_with = "<limit lower upper> of the joint"});
+  } else if (joint.lower >= joint.upper) {
+    fail(limit, joint.name, fmt::format("limit lower = {}: must be below upper = {}", joint.lower, joint.upper));
+  }
 }
 
 void SourceReader::read_mimic(const XMLElement& mimic, SourceJoint& joint) const {

@@ -41,6 +41,9 @@ class SourceReader {
   SourceInertial read_inertial(const tinyxml2::XMLElement& element, const std::string& link) const;
   void read_link(const tinyxml2::XMLElement& element);
   void read_joint(const tinyxml2::XMLElement& element);
+  JointType joint_type(const tinyxml2::XMLElement& element, const std::string& joint) const;
+  void read_axis(const tinyxml2::XMLElement& axis, SourceJoint& joint) const;
+  void read_limit(const tinyxml2::XMLElement& limit, bool needs_limit, SourceJoint& joint);
   void read_mimic(const tinyxml2::XMLElement& mimic, SourceJoint& joint) const;
   Eigen::Vector3d read_scale(const tinyxml2::XMLElement& element, const std::string& link);
   void read_mesh(const tinyxml2::XMLElement& element, const std::string& link, Shape& shape);

@@ -95,55 +95,97 @@ class Tour {
   std::vector<TourProblem::Station> stations_;
 };
 
-/// Order with the minimum completion that meets every window; empty if there is none. `best[set * size + last]` is the
-/// departure time from `last` after all stations of the set.
-std::vector<std::size_t> exact_order(const Tour& tour) {
-  const std::size_t size = tour.size(), all = (std::size_t{1} << size) - 1;
-  std::vector<double> best((all + 1) * size, kNoOrder);
-  std::vector<std::uint8_t> before((all + 1) * size, 0);
-  std::vector<std::size_t> must_precede(size, 0);  // sets of stations
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t j = 0; j < size; ++j) {
+/// Set of stations: bit i is station i.
+using StationSet = std::size_t;
+
+StationSet set_of(std::size_t station) { return StationSet{1} << station; }
+
+/// Returns the stations that must precede each station, by priorities and fixed ends.
+std::vector<StationSet> stations_before(const Tour& tour) {
+  std::vector<StationSet> before(tour.size(), 0);
+  for (std::size_t i = 0; i < tour.size(); ++i) {
+    for (std::size_t j = 0; j < tour.size(); ++j) {
       const bool by_priority = !tour.is_fixed(i) && !tour.is_fixed(j) && tour.priority(j) < tour.priority(i);
-      if (i != j && (by_priority || tour.is_end(i) || tour.is_start(j))) must_precede[i] |= std::size_t{1} << j;
-    }
-    if (must_precede[i] == 0 && tour.lateness(i, 0.0) == 0.0)
-      best[(std::size_t{1} << i) * size + i] = tour.departure(i, 0.0);
-  }
-  for (std::size_t set = 1; set < all; ++set) {
-    for (std::size_t last = 0; last < size; ++last) {
-      const double left = best[set * size + last];
-      if (std::isinf(left)) continue;
-      for (std::size_t next = 0; next < size; ++next) {
-        if ((set >> next & 1u) != 0 || (must_precede[next] & ~set) != 0) continue;
-        const double reached = left + tour.travel(last, next);
-        if (std::isinf(reached) || tour.lateness(next, reached) > 0.0) continue;
-        const std::size_t there = (set | std::size_t{1} << next) * size + next;
-        if (tour.departure(next, reached) < best[there])
-          best[there] = tour.departure(next, reached), before[there] = static_cast<std::uint8_t>(last);
-      }
+      if (i != j && (by_priority || tour.is_end(i) || tour.is_start(j))) before[i] |= set_of(j);
     }
   }
-  std::size_t last = size;
-  double soonest = kNoOrder;
-  for (std::size_t i = 0; i < size; ++i) {
-    // A closed tour begins at the only station that no station may precede.
-    double done = best[all * size + i];
-    for (std::size_t start = 0; start < size && size > 1; ++start) {
-      if (tour.is_closed_tour() && tour.is_start(start)) done += tour.travel(i, start);
-    }
-    if (done < soonest) soonest = done, last = i;
-  }
-  std::vector<std::size_t> order;
-  for (std::size_t set = all; last < size && set != 0;) {
-    order.push_back(last);
-    const std::size_t previous = before[set * size + last];
-    set &= ~(std::size_t{1} << last);
-    last = previous;
-  }
-  std::reverse(order.begin(), order.end());
-  return order;
+  return before;
 }
+
+/// Dynamic program over sets of stations [HeldKarp62]: earliest departure from each station after all of a set, with
+/// every window met.
+class OrderTable {
+ public:
+  explicit OrderTable(const Tour& tour)
+      : tour_(tour),
+        size_(tour.size()),
+        all_(set_of(size_) - 1),
+        departure_((all_ + 1) * size_, kNoOrder),
+        previous_((all_ + 1) * size_, 0) {
+    const std::vector<StationSet> before = stations_before(tour);
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (before[i] == 0 && tour.lateness(i, 0.0) == 0.0) departure_[index(set_of(i), i)] = tour.departure(i, 0.0);
+    }
+    for (StationSet set = 1; set < all_; ++set) {
+      for (std::size_t last = 0; last < size_; ++last) extend(set, last, before);
+    }
+  }
+
+  /// Returns the order with the minimum completion; empty if there is none.
+  std::vector<std::size_t> best_order() const {
+    std::vector<std::size_t> order;
+    std::size_t last = last_of_best();
+    for (StationSet set = all_; last < size_ && set != 0;) {
+      order.push_back(last);
+      const std::size_t previous = previous_[index(set, last)];
+      set &= ~set_of(last);
+      last = previous;
+    }
+    std::reverse(order.begin(), order.end());
+    return order;
+  }
+
+ private:
+  std::size_t index(StationSet set, std::size_t last) const { return set * size_ + last; }
+
+  /// Extends the best order of a set that ends at `last` by each other station.
+  void extend(StationSet set, std::size_t last, const std::vector<StationSet>& before) {
+    const double left = departure_[index(set, last)];
+    if (std::isinf(left)) return;
+    for (std::size_t next = 0; next < size_; ++next) {
+      if ((set & set_of(next)) != 0 || (before[next] & ~set) != 0) continue;
+      const double reached = left + tour_.travel(last, next);
+      if (std::isinf(reached) || tour_.lateness(next, reached) > 0.0) continue;
+      const std::size_t there = index(set | set_of(next), next);
+      if (tour_.departure(next, reached) < departure_[there])
+        departure_[there] = tour_.departure(next, reached), previous_[there] = static_cast<std::uint8_t>(last);
+    }
+  }
+
+  /// Returns the last station of the best order of all stations; their number if there is none.
+  std::size_t last_of_best() const {
+    std::size_t best = size_;
+    double soonest = kNoOrder;
+    for (std::size_t i = 0; i < size_; ++i) {
+      // A closed tour begins at the only station that no station may precede.
+      double done = departure_[index(all_, i)];
+      for (std::size_t start = 0; start < size_ && size_ > 1; ++start) {
+        if (tour_.is_closed_tour() && tour_.is_start(start)) done += tour_.travel(i, start);
+      }
+      if (done < soonest) soonest = done, best = i;
+    }
+    return best;
+  }
+
+  const Tour& tour_;
+  std::size_t size_;
+  StationSet all_;
+  std::vector<double> departure_;       ///< [index(set, last)]
+  std::vector<std::uint8_t> previous_;  ///< [index(set, last)]: station before the last one
+};
+
+/// Order with the minimum completion that meets every window; empty if there is none.
+std::vector<std::size_t> exact_order(const Tour& tour) { return OrderTable(tour).best_order(); }
 
 /// Or-opt and 2-opt until neither improves: segments of one to three stations are moved, or any segment is reversed.
 class LocalSearch {
