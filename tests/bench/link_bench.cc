@@ -40,6 +40,8 @@ std::pair<int, int> socket_pair() {
 
 LaserScan sample_scan() {
   LaserScan scan;
+  scan.angle_min_rad = -2.0;
+  scan.angle_increment_rad = 4.0 / kBeams;
   scan.ranges_m.assign(kBeams, 3.5F);
   return scan;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -66,19 +67,14 @@ bool report(const char* half, const std::optional<io::LogDifference>& difference
   return !difference;
 }
 
-}  // namespace
-
-ExitCode verify_command(const VerifyOptions& options) {
-  const RunDirectory directory = open_run_directory(options.run);
-  require_complete(directory, "cannot be verified");
+/// Throws InputError if a complete run cannot be verified as a whole.
+void check_run(const RunDirectory& directory, const std::vector<StackTurnRecord>& turns, bool is_external) {
   if (is_of_feed(directory.scenario())) {
     throw InputError(
         fmt::format("{}: was made by patrol feed, and the answers in it had no effect on the robot: verify the run "
                     "that was fed",
                     directory.root.string()));
   }
-  if (options.stack) check_stack(*options.stack);
-  const std::vector<StackTurnRecord> turns = read_turn_records(directory.log());
   if (!turns.empty() && !turns.back().is_last) {
     throw InputError(fmt::format("{}: its stack failed after its turn at {:.3f} s: only a complete run can be verified",
                                  directory.log().string(), to_seconds(turns.back().turn)));
@@ -89,52 +85,87 @@ ExitCode verify_command(const VerifyOptions& options) {
         fmt::format("{}: is a branch with other settings: only a whole run of one scenario can be verified",
                     directory.root.string()));
   }
-  Scenario scenario = load_scenario(directory.scenario());
-  const bool is_external = !scenario.stack.command.empty();
   if (is_external && turns.empty()) {
     throw InputError(
         fmt::format("{}: its stack failed before the end of its first turn: only a complete run can be "
                     "verified",
                     directory.log().string()));
   }
-  const std::filesystem::path data_root = find_data_root(directory.scenario());
-  const ScenarioFiles files = load_scenario_files(scenario, data_root);
-  const std::string name = directory.root.filename().string();
-  const TemporaryFolder again("verify");
+}
 
-  fmt::print(stderr, "verify: rerunning {}, seed {}\n", directory.scenario().string(), scenario.seed);
-  sim::Simulator simulator = make_simulator(scenario, files);
-  bool is_same = false;
-  {
-    RecordedStack recorded(directory.log(), simulator.tick(), !turns.empty());
-    ProgressLine observer("verify simulator", scenario.time_limit_s);
-    const std::filesystem::path log = again.path() / "simulator.mcap";
-    throw_if_ended_early(run_loop(scenario, files, simulator, recorded, log, observer));
-    is_same = report("simulator", io::first_difference(directory.log(), log));
+/// Repeats the two halves of a run: the simulator with the recorded answers of the stack, and the stack with the
+/// recorded messages of the simulator.
+class Verification {
+ public:
+  Verification(const RunDirectory& directory, Scenario scenario, std::vector<StackTurnRecord> turns)
+      : directory_(directory),
+        scenario_(std::move(scenario)),
+        turns_(std::move(turns)),
+        data_root_(find_data_root(directory.scenario())),
+        files_(load_scenario_files(scenario_, data_root_)),
+        simulator_(make_simulator(scenario_, files_)) {}
+
+  /// Returns whether the simulator writes the same messages, and prints the first difference.
+  bool simulator_is_same() {
+    fmt::print(stderr, "verify: rerunning {}, seed {}\n", directory_.scenario().string(), scenario_.seed);
+    RecordedStack recorded(directory_.log(), simulator_.tick(), !turns_.empty());
+    ProgressLine observer("verify simulator", scenario_.time_limit_s);
+    const std::filesystem::path log = again_.path() / "simulator.mcap";
+    throw_if_ended_early(run_loop(scenario_, files_, simulator_, recorded, log, observer));
+    return report("simulator", io::first_difference(directory_.log(), log));
   }
 
-  if (is_external && !options.stack) {
-    fmt::print("stack: not verified: start it with --stack, in this run: {}\n", scenario.stack.command);
-    return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
+  /// Returns whether the stack gives the same answers, and prints the first difference. `command`: command or address
+  /// of the stack; none: that of the scenario.
+  bool stack_is_same(const std::optional<std::string>& command) {
+    if (command) scenario_.stack.command = *command;
+    ProgressLine observer("verify stack", scenario_.time_limit_s);
+    const std::filesystem::path output = again_.path() / "stack.log", log = again_.path() / "stack.mcap";
+    std::unique_ptr<StackPort> stack = make_stack_port(scenario_, files_,
+                                                       {.scenario = directory_.root.filename().string(),
+                                                        .data_root = data_root_,
+                                                        .output = output,
+                                                        .output_name = "above",
+                                                        .is_interrupted = [&] { return observer.is_interrupted(); }});
+    const RunOutcome outcome = feed_loop(directory_.log(), files_, simulator_.tick(), *stack, log, observer, turns_);
+    const bool has_turns = !turns_.empty() && stack->records_turns();
+    stack.reset();  // writes the rest of the output
+    if (!outcome.stack_failure.empty()) print_last_lines(output);
+    throw_if_ended_early(outcome);
+    const auto is_answer = [&](const std::string& topic) {
+      return io::is_stack_output(topic) || (has_turns && topic == io::kTopic<StackTurnRecord>);
+    };
+    return report("stack", io::first_difference(directory_.log(), log, is_answer));
   }
-  if (options.stack) scenario.stack.command = *options.stack;
-  ProgressLine observer("verify stack", scenario.time_limit_s);
-  const std::filesystem::path output = again.path() / "stack.log";
-  std::unique_ptr<StackPort> stack = make_stack_port(
-      scenario, files,
-      {.scenario = name, .data_root = data_root, .output = output, .output_name = "above", .is_interrupted = [&] {
-         return observer.is_interrupted();
-       }});
-  const std::filesystem::path log = again.path() / "stack.mcap";
-  const RunOutcome outcome = feed_loop(directory.log(), files, simulator.tick(), *stack, log, observer, turns);
-  const bool has_turns = !turns.empty() && stack->records_turns();
-  stack.reset();  // writes the rest of the output
-  if (!outcome.stack_failure.empty()) print_last_lines(output);
-  throw_if_ended_early(outcome);
-  const auto is_answer = [&](const std::string& topic) {
-    return io::is_stack_output(topic) || (has_turns && topic == io::kTopic<StackTurnRecord>);
-  };
-  is_same = report("stack", io::first_difference(directory.log(), log, is_answer)) && is_same;
+
+ private:
+  const RunDirectory& directory_;
+  Scenario scenario_;
+  std::vector<StackTurnRecord> turns_;
+  std::filesystem::path data_root_;
+  ScenarioFiles files_;
+  sim::Simulator simulator_;
+  TemporaryFolder again_{"verify"};
+};
+
+}  // namespace
+
+ExitCode verify_command(const VerifyOptions& options) {
+  const RunDirectory directory = open_run_directory(options.run);
+  require_complete(directory, "cannot be verified");
+  if (options.stack) check_stack(*options.stack);
+  std::vector<StackTurnRecord> turns = read_turn_records(directory.log());
+  Scenario scenario = load_scenario(directory.scenario());
+  const std::string command = scenario.stack.command;
+  check_run(directory, turns, !command.empty());
+  Verification verification(directory, std::move(scenario), std::move(turns));
+
+  bool is_same = verification.simulator_is_same();
+  if (!command.empty() && !options.stack) {
+    fmt::print("stack: not verified: start it with --stack, in this run: {}\n", command);
+  } else {
+    is_same = verification.stack_is_same(options.stack) && is_same;
+  }
   return is_same ? ExitCode::kDone : ExitCode::kExpectationMissed;
 }
 

@@ -115,15 +115,17 @@ inline constexpr const char* kLaserScanFields =
     "std_msgs/Header header\nfloat32 angle_min\nfloat32 angle_max\nfloat32 angle_increment\nfloat32 time_increment\n"
     "float32 scan_time\nfloat32 range_min\nfloat32 range_max\nfloat32[] ranges\nfloat32[] intensities\n";
 
-/// Throws DecodeError if `angle_max_rad` is further than two increments from the angle of the last beam: drivers differ
-/// by one.
+/// Throws DecodeError if several beams have one angle, or if `angle_max_rad` is further than two increments from the
+/// angle of the last beam: drivers differ by one.
 inline void expect_angles(const LaserScan& scan, double angle_max_rad) {
   constexpr double kIncrements = 2.0;
   const auto num_steps = static_cast<double>(scan.ranges_m.size()) - 1.0;
   if (num_steps < 1.0) return;
   const double last_rad = scan.angle_min_rad + scan.angle_increment_rad * num_steps;
   const double increment_rad = std::abs(scan.angle_increment_rad);
-  if (increment_rad > 0.0 && std::abs(angle_max_rad - last_rad) <= kIncrements * increment_rad) return;
+  if (increment_rad == 0.0)
+    throw DecodeError(fmt::format("angle_increment is 0 in a scan of {} beams", scan.ranges_m.size()));
+  if (std::abs(angle_max_rad - last_rad) <= kIncrements * increment_rad) return;
   throw DecodeError(
       fmt::format("angle_max {:.4g} rad contradicts the angle of the last of {} beams, {:.4g} rad by angle_min and "
                   "angle_increment",

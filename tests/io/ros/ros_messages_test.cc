@@ -130,7 +130,6 @@ TEST(Decode, LaserScanWhoseLastAngleIsMoreThanTwoIncrementsOffIsRefused) {
     EXPECT_EQ(decode<LaserScan>(scan_with_angle_max(angle_max_rad)).ranges_m.size(), 5u) << angle_max_rad;
   for (const float angle_max_rad : {-1.0F, -0.1F, 2.1F, std::numeric_limits<float>::quiet_NaN()})
     EXPECT_THROW(decode<LaserScan>(scan_with_angle_max(angle_max_rad)), DecodeError) << angle_max_rad;
-  EXPECT_THROW(decode<LaserScan>(scan_with_angle_max(-1.0F, 0.0)), DecodeError);
   try {
     decode<LaserScan>(scan_with_angle_max(3.0F));
     ADD_FAILURE();
@@ -138,6 +137,15 @@ TEST(Decode, LaserScanWhoseLastAngleIsMoreThanTwoIncrementsOffIsRefused) {
     EXPECT_STREQ(error.what(),
                  "angle_max 3 rad contradicts the angle of the last of 5 beams, 1 rad by angle_min and "
                  "angle_increment");
+  }
+}
+
+TEST(Decode, LaserScanOfSeveralBeamsWithoutAnIncrementIsRefused) {
+  try {
+    decode<LaserScan>(scan_with_angle_max(-1.0F, 0.0));
+    ADD_FAILURE();
+  } catch (const DecodeError& error) {
+    EXPECT_STREQ(error.what(), "angle_increment is 0 in a scan of 5 beams");
   }
 }
 
